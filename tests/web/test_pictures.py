@@ -5,6 +5,7 @@ import io
 import re
 from dataclasses import replace
 from datetime import date, timedelta
+from itertools import pairwise
 
 import httpx
 import numpy as np
@@ -13,13 +14,15 @@ import pytest
 from app.sun.horizon import Horizon
 from app.sun.position import Algorithm
 from app.tracker.memory.recording import COLUMNS, RecordingKind
-from app.tracker.settings.config import TrackerConfig
+from app.tracker.mounts.usual import mounted
+from app.tracker.settings.axes import AxisConfig
+from app.tracker.settings.config import MountKind, TrackerConfig
 from app.tracker.state.snapshot import ActivityName, Pair
 from app.web.charts.cartesian import cartesian
 from app.web.charts.sunpath import hours_of
-from app.web.shell.scene import scene_recorded
+from app.web.shell.scene import scene_on, scene_recorded
 from tests.fake_alarms import alarm
-from tests.fake_data import NOON, SAMSUN, TIME_ZONE, commissioned
+from tests.fake_data import NOON, SAMSUN, TIME_ZONE, commissioned, recording
 from tests.fake_tracker import FakeTracker
 from tests.fakes import FakeMachine
 
@@ -49,6 +52,41 @@ def test_the_skyline_is_as_high_as_the_horizon() -> None:
     assert tops[LEFT + 250.0 * PER_DEGREE] == pytest.approx(BOTTOM - 22.0 * RISE)
     assert tops[LEFT + 175.0 * PER_DEGREE] == pytest.approx(BOTTOM - 17.0 * RISE, abs=0.1)
     assert cartesian(CONFIG, SAMSUN, TIME_ZONE, JUNE, Horizon()).skyline == ""
+
+
+def test_south_of_the_equator_north_is_in_the_middle() -> None:
+    drawn = cartesian(CONFIG, replace(SAMSUN, latitude_deg=-33.9), "Africa/Johannesburg", JUNE, HILLS)
+    assert [tick.text for tick in drawn.columns][::6] == ["180° S", "0° N", "180° S"]
+    noon = min(points_of(drawn.today.path), key=lambda one: one[1])
+    assert noon[0] == pytest.approx(LEFT + 360.0, abs=12.0)
+    for piece in drawn.months[6].path.split("M")[1:]:
+        xs = [x for x, _ in points_of("M" + piece)]
+        assert max(abs(a - b) for a, b in pairwise(xs)) < 60, "no line across the whole picture"
+
+
+@pytest.mark.parametrize(
+    ("least_deg", "most_deg", "rectangles"),
+    [(0.0, 360.0, [(0, 360)]), (60.0, 300.0, [(60, 300)]), (-90.0, 200.0, [(270, 360), (0, 200)])],
+)
+def test_limits_are_rectangles_also_over_the_side(
+    least_deg: float, most_deg: float, rectangles: list[tuple[float, float]]
+) -> None:
+    turning = AxisConfig(least_deg, most_deg, 6.0, 3.0, 0.5, 2.0)
+    path = cartesian(replace(CONFIG, azimuth=turning), SAMSUN, TIME_ZONE, JUNE, HILLS).reach
+    found = [(float(a), float(b)) for a, b in re.findall(r"M([\d.]+) [\d.]+H([\d.]+)", path)]
+    assert found == [(LEFT + a * PER_DEGREE, LEFT + b * PER_DEGREE) for a, b in rectangles]
+
+
+def test_the_scene_has_the_limits_of_the_mount_and_a_recording_those_it_was_made_with() -> None:
+    config = mounted(CONFIG, MountKind.EQUATORIAL, 41.3)
+    scene = scene_on(config, SAMSUN, TIME_ZONE, JUNE, Algorithm.PSA, HILLS)
+    assert (scene.first, scene.second) == ((-105.0, 105.0), (-24.0, 24.0))
+    single = mounted(CONFIG, MountKind.HORIZONTAL_SINGLE_AXIS, 41.3)
+    assert scene_on(single, SAMSUN, TIME_ZONE, JUNE, Algorithm.PSA, HILLS).second is None
+    info = recording("show-1", RecordingKind.SHOW, "A show", 15.0, 180.0)
+    assert scene_recorded(info, JUNE).first is None, "from before mounts were recorded"
+    shown = scene_recorded(replace(info, mount=config.mount, first_deg=(-105.0, 105.0)), JUNE)
+    assert (shown.mount.kind, shown.first) == (MountKind.EQUATORIAL, (-105.0, 105.0))
 
 
 async def test_the_horizon_is_kept_and_comes_back(client: httpx.AsyncClient, machine: FakeMachine) -> None:
