@@ -45,6 +45,7 @@ def test_gaps_are_those_of_the_english_text(stored: Catalog) -> None:
             assert set(GAPS.findall(form)) <= set(GAPS.findall(english)), form
         else:
             assert Counter(GAPS.findall(form)) == Counter(GAPS.findall(english)), form
+        assert form.count("%%") == english.count("%%"), form
 
 
 def test_tags_are_those_of_the_english_text(stored: Catalog) -> None:
