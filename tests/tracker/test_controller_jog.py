@@ -160,6 +160,17 @@ def test_without_a_watchdog_in_the_drive_a_jog_is_made_of_bounded_steps() -> Non
     assert "no_watchdog" in {notice.code for notice in plant.snapshot.notices}
 
 
+@pytest.mark.parametrize(
+    ("speed", "speed_dps"), [(JogSpeed.SLOW, CONFIG.azimuth.jog_slow_dps), (JogSpeed.FAST, 3.0)]
+)
+def test_with_a_watchdog_a_jog_is_its_speed_in_its_direction(
+    blank: Plant, speed: JogSpeed, speed_dps: float
+) -> None:
+    blank.ask(replace(press("p1", direction=-1), speed=speed))
+    assert blank.told.azimuth == Velocity(-speed_dps)
+    assert CONFIG.azimuth.jog_slow_dps < CONFIG.azimuth.jog_fast_dps
+
+
 def test_no_jog_without_a_drive_nor_during_tracking_nor_while_stopping() -> None:
     plant = Plant(READY)
     with pytest.raises(CommandRejected) as refused:
