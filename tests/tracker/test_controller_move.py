@@ -128,6 +128,13 @@ def test_an_orientation_beyond_the_limits_is_refused(mode: Mode, held: Orientati
     plant.ask(SelectMode(Mode.DUAL, held))
 
 
+def test_a_mode_that_is_selected_without_a_zero_is_kept_but_not_confirmed(blank: Plant) -> None:
+    held = Orientation(blank.azimuth_deg, blank.elevation_deg)
+    blank.ask(SelectMode(Mode.FIXED, held))
+    assert (blank.controller.memory.mode, blank.controller.memory.orientation) == (Mode.FIXED, held)
+    assert StepName.MODE not in blank.controller.memory.confirmations
+
+
 def test_the_mode_cannot_change_under_a_tracker_that_tracks(plant: Plant) -> None:
     plant.ask(Track())
     with pytest.raises(CommandRejected, match="is tracking"):
