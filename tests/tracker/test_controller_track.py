@@ -79,6 +79,14 @@ def test_a_range_wound_up_by_day_is_unwound_although_the_panel_faces_the_same_wa
     assert plant.azimuth_deg == pytest.approx(low_deg, abs=0.05)
 
 
+def test_in_the_south_a_range_of_more_than_a_turn_waits_for_the_sunrise_at_its_upper_end() -> None:
+    wide = replace(CONFIG, azimuth=replace(CONFIG.azimuth, minimum_deg=0.0, maximum_deg=540.0))
+    plant = tracking(config=wide, at=datetime(2026, 12, 21, 12, tzinfo=UTC), location=Location(-34.0, 150.0))
+    plant.forward(60.0)
+    assert plant.dawn is not None
+    assert plant.azimuth_deg == pytest.approx(plant.dawn.azimuth_deg + 360.0, abs=0.5)
+
+
 @pytest.mark.parametrize("night", [NightBehaviour.HOLD, NightBehaviour.PARK])
 def test_other_nights(night: NightBehaviour) -> None:
     plant = tracking(config=replace(CONFIG, night=night), at=datetime(2026, 6, 21, 20, 0, tzinfo=UTC))
