@@ -214,10 +214,16 @@ def test_a_direction_midway_between_two_stops_goes_to_the_one_nearer_to_the_axis
     assert aim(with_range(90.0, 270.0), LEVEL, Orientation(0.0, 30.0), 100.0).azimuth_deg == 90.0
 
 
-def test_a_mast_that_leans_north_sees_the_north_higher_and_the_south_lower() -> None:
+def test_a_mast_sees_higher_where_it_leans_to_and_offsets_are_added() -> None:
     lean = Pointing(lean_north_deg=2.0)
     assert aim(PLAIN, lean, Orientation(0.0, 40.0), 0.0).elevation_deg == pytest.approx(42.0)
     assert aim(PLAIN, lean, Orientation(180.0, 40.0), 180.0).elevation_deg == pytest.approx(38.0)
+    lean = Pointing(lean_east_deg=2.0)
+    assert aim(PLAIN, lean, Orientation(90.0, 40.0), 90.0).elevation_deg == pytest.approx(42.0)
+    assert aim(PLAIN, lean, Orientation(270.0, 40.0), 270.0).elevation_deg == pytest.approx(38.0)
+    offset = Pointing(azimuth_offset_deg=3.0, elevation_offset_deg=-1.0)
+    assert aim(PLAIN, offset, Orientation(100.0, 40.0), 0.0)[:2] == (103.0, 39.0)
+    assert sky(PLAIN, LEVEL, 100.0, 95.0) == Orientation(280.0, 85.0), "past the zenith"
 
 
 @given(
