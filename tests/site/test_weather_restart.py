@@ -202,6 +202,17 @@ async def test_a_report_that_demands_a_stow_is_on_disk_once_it_is_acknowledged(
     assert b'"gust_mps":28.0' in synced[-1]
 
 
+async def test_a_proper_end_keeps_the_last_that_was_known(lives: Lives) -> None:
+    plant = await lives.begin()
+    for wind_mps in (4.0, 5.0, 6.0):
+        await blow(plant, wind_mps)
+    await plant.close()
+    await lives.kill()
+    plant = await lives.begin()
+    await plant.forward(seconds=0.5)
+    assert told(plant).readings.wind_mps == 6.0
+
+
 @pytest.mark.fault(84)
 @pytest.mark.parametrize("damage", [b"", b"\xff" * 300, b"{}"])
 async def test_a_damaged_file_is_no_weather(lives: Lives, damage: bytes, fault: FaultResult) -> None:
