@@ -105,6 +105,14 @@ class Mast:
         self.closed += 1
 
 
+@pytest.mark.parametrize(
+    ("host", "port", "unit"), [(" ", 502, 1), ("a", 0, 1), ("a", 65536, 1), ("a", 502, 256)]
+)
+def test_a_station_without_a_plausible_address_is_refused(host: str, port: int, unit: int) -> None:
+    with pytest.raises(ValueError, match="weather station"):
+        MetStation(host, port, unit)
+
+
 async def test_a_station_is_read_every_second_until_another_is_set() -> None:
     clock, mast = VirtualClock(SUMMER_NOON), Mast()
     told: list[tuple[Weather | None, tuple[str, ...], str]] = []
