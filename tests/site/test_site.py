@@ -160,6 +160,7 @@ async def test_trackers_come_and_go(plant: Plant) -> None:
         (TrackerConfig("T2", "x", drive=DriveConfig(DriveKind.MODBUS_TCP, port=0)), "port"),
         (TrackerConfig("T2", "x", drive=DriveConfig(DriveKind.MODBUS_TCP, host=" ")), "host"),
         (TrackerConfig("T2", "x", drive=DriveConfig(DriveKind.MODBUS_RTU, unit=0)), "between 1 and 247"),
+        (TrackerConfig("T2", "x", drive=DriveConfig(DriveKind.MODBUS_RTU, unit=248)), "between 1 and 247"),
     ],
 )
 @pytest.mark.fault(24)
@@ -369,6 +370,12 @@ async def test_saving_the_same_place_again_changes_no_revision(plant: Plant) -> 
 
     assert plant.site.model.state.location_revision == revision == 1
     assert plant.site.model.state.time_zone == "UTC"
+
+
+async def test_what_was_never_done_cannot_be_confirmed(plant: Plant) -> None:
+    for step in StepName:
+        with pytest.raises(CommandRejected, match="not done yet"):
+            await plant.ask(ConfirmStep("T1", step))
 
 
 async def test_a_time_zone_must_exist(plant: Plant) -> None:
