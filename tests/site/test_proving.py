@@ -149,7 +149,7 @@ async def test_a_move_is_not_judged_with_an_angle_that_cannot_be_nor_under_other
     with pytest.raises(CommandRejected, match="uses 10, 30, or 90 degrees"):
         await plant.ask(RunScaleTest(Axis.ELEVATION, 20.0))
     turned = await plant.turn(RunScaleTest(Axis.AZIMUTH), Axis.AZIMUTH)
-    for measured_deg in (-5.0, 4000.0, float("nan")):
+    for measured_deg in (0.0, -5.0, 4000.0, float("nan")):
         with pytest.raises(ValueError, match="Enter the degrees that the panel turned"):
             await plant.ask(AnswerScale("T1", measured_deg))
     assert plant.config == BUILT
