@@ -96,8 +96,11 @@ def test_other_nights(night: NightBehaviour) -> None:
     assert (plant.snapshot.target is None) == (night is NightBehaviour.HOLD)
 
 
-def test_in_the_polar_night_there_is_no_sunrise_to_turn_to() -> None:
-    plant = tracking(at=datetime(2026, 12, 21, 12, 0, tzinfo=UTC), location=Location(85.0, 20.0))
+def test_in_the_polar_night_there_is_no_sunrise_to_turn_to_but_a_park_position() -> None:
+    noon, north = datetime(2026, 12, 21, 12, tzinfo=UTC), Location(85.0, 20.0)
+    parked = tracking(config=replace(CONFIG, night=NightBehaviour.PARK), at=noon, location=north)
+    assert parked.elevation_deg == pytest.approx(90.0, abs=0.05)
+    plant = tracking(at=noon, location=north)
     assert plant.dawn is None
     assert plant.told == DriveCommand()
     assert plant.snapshot.activity_text == "Tracking: holding until sunrise"
