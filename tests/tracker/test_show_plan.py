@@ -27,6 +27,7 @@ from tests.tracker.shows import (
     SAMSUN,
     SOLSTICE,
     SOUTH,
+    SVALBARD,
     ZENITH_DAY,
     show,
     utc,
@@ -98,6 +99,26 @@ def test_a_show_that_begins_by_night_waits_where_the_sun_will_rise() -> None:
     assert not first.sun_is_up
     assert first.sun.elevation_deg < -1.0
     assert not first.repositioning
+
+
+@pytest.mark.parametrize(
+    ("begin_hour", "seconds", "range_deg", "told"),
+    [
+        (0, 180.0, (0.0, 540.0), []),
+        (0, 180.0, (0.0, 360.0), ["limited"]),
+        (-13, 400.0, (0.0, 360.0), ["unwinding"]),
+    ],
+    ids=["turns further", "waits at its end stop", "unwinds at midnight"],
+)
+def test_a_polar_day_of_24_hours_is_shown_in_one_piece(
+    begin_hour: int, seconds: float, range_deg: tuple[float, float], told: list[str]
+) -> None:
+    begin = utc(2026, 6, 21) + timedelta(hours=begin_hour)
+    check = check_show(show(SVALBARD, begin, begin + timedelta(days=1), seconds), with_range(*range_deg))
+    assert check.feasible
+    assert codes(check.notices) == told
+    assert check.path.sun_is_up.all()
+    assert (check.path.panel_azimuth_deg.max() > 360.0) == (range_deg[1] > 360.0)
 
 
 def test_through_the_north_an_axis_of_0_to_360_unwinds_at_noon_as_slowly_as_it_turns() -> None:
