@@ -169,6 +169,10 @@ def test_a_scenario_waits_for_its_time_in_calm() -> None:
         ("time,wind_mps\n10:00,nan", "wind_mps must be a number, not 'nan'"),
         ("time,wind_mps\n10:00,3\n10:00,4", "must come after the one before it"),
         ("time,wind_mps", "has 1 to 500 steps"),
+        (
+            "time,wind_mps" + "".join(f"\n{at // 60}:{at % 60:02},3" for at in range(501)),
+            "has 1 to 500 steps",
+        ),
     ],
 )
 def test_what_cannot_be_read_says_why(text: str, sentence: str) -> None:
