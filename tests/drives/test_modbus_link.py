@@ -84,6 +84,25 @@ async def test_a_bad_reply_is_never_believed_and_the_next_read_is_right(
         fault.recovers("automatic: with the next good reply, over a new connection")
 
 
+async def test_a_reply_in_many_pieces_is_put_together() -> None:
+    def dribble(request: bytes) -> list[bytes | None]:
+        return [bytes((byte,)) for byte in right(request)]
+
+    async with linked(dribble) as (link, server, _):
+        assert await read(link) == RIGHT
+        assert server.connections == 1
+
+
+async def test_a_connection_lost_at_rest_is_renewed_by_the_next_read() -> None:
+    async with linked(lambda request: [right(request)]) as (link, server, _):
+        await read(link)
+        port = server.port
+        await server.close()
+        await asyncio.sleep(0.02)
+        await server.start(port)
+        assert await read(link) == RIGHT
+
+
 @pytest.mark.parametrize("name", ["another unit", "the line is cut"])
 async def test_a_read_survives_one_bad_reply(name: str) -> None:
     async with linked(BAD_REPLIES[name], good) as (link, server, _):
