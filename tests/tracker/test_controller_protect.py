@@ -6,14 +6,30 @@ from datetime import timedelta
 import pytest
 
 from app.simulation.faults import Fault, FaultKind
-from app.tracker.commands.commands import CommandRejected, Jog, Move, ResetFault, SetHome, Stop, Track
+from app.tracker.commands.commands import (
+    Command,
+    CommandRejected,
+    GoToStart,
+    Home,
+    Jog,
+    Move,
+    ResetFault,
+    RunCommunicationLossTest,
+    RunShow,
+    SetHome,
+    Stop,
+    Stow,
+    Track,
+)
 from app.tracker.motion.following_error import AxisWatch, watch
 from app.tracker.settings.axes import Axis, AxisConfig
 from app.tracker.settings.config import Orientation
+from app.tracker.settings.protections import StowName
 from app.tracker.state.snapshot import ActivityName, EventKind
 from app.tracker.values.motion import HALT, AxisCommand, AxisFeedback, DriveCommand, Position, Velocity
 from tests.tracker.plant import MORNING, READY, Plant
 from tests.tracker.scripted import Scripted
+from tests.tracker.shows import SOLSTICE
 
 SOUTH = Move(Orientation(180.0, 45.0))
 
@@ -180,6 +196,35 @@ def test_a_long_way_at_one_tick_a_second_is_no_fault() -> None:
     plant.forward(90.0)
     assert plant.azimuth_deg == pytest.approx(350.0, abs=0.05)
     assert not plant.happened(EventKind.FAULT_RAISED)
+
+
+GOING = {"move", "park", "stow", "track", "go_to_start"}
+BY_HAND = {"jog", "step", "home", "set_home", "undo_home", "set_limit"}
+PROOFS = {"test_direction", "test_scale", "test_stop", "test_communication_loss"}
+TO_SHOW = (GoToStart(SOLSTICE), 30.0, RunShow(SOLSTICE), 1.0)
+DOING: dict[ActivityName, tuple[tuple[Command | float, ...], set[str]]] = {
+    ActivityName.HOLDING: ((), GOING | BY_HAND | PROOFS),
+    ActivityName.HOMING: ((Home(),), set()),
+    ActivityName.SETTING_HOME: ((SetHome(),), set()),
+    ActivityName.JOGGING: ((Jog("p", Axis.AZIMUTH, 1),), {"jog"}),
+    ActivityName.MOVING: ((SOUTH,), GOING),
+    ActivityName.STOPPING: ((SOUTH, 2.0, Stop()), set()),
+    ActivityName.TRACKING: ((Track(), 1.0), GOING),
+    ActivityName.STOWING: ((Stow(StowName.WIND),), GOING),
+    ActivityName.STOWED: ((Stow(StowName.WIND), 40.0), GOING),
+    ActivityName.SHOWING: (TO_SHOW, {"go_to_start"}),
+    ActivityName.MEASURING: ((RunCommunicationLossTest(Axis.AZIMUTH), 0.3), set()),
+}
+
+
+@pytest.mark.parametrize("activity", DOING)
+def test_what_may_begin_while_something_else_goes_on(plant: Plant, activity: ActivityName) -> None:
+    asked, free = DOING[activity]
+    for one in asked:
+        _ = plant.forward(one) if isinstance(one, float) else plant.ask(one)
+    assert plant.activity is activity
+    busy = {action for action in plant.snapshot.actions if f"busy_{activity}" in plant.reasons(action)}
+    assert busy & (GOING | BY_HAND | PROOFS) == (GOING | BY_HAND | PROOFS) - free
 
 
 def test_a_switch_in_the_way_ends_a_move_and_the_other_way_is_free(plant: Plant) -> None:
