@@ -113,6 +113,13 @@ def test_a_press_that_is_not_known_is_dead(blank: Plant) -> None:
     assert refusal(blank, press("p9")) == ["press_dead"]
 
 
+def test_an_old_press_stays_dead_when_a_thousand_have_come_since(blank: Plant) -> None:
+    for number in range(1200):
+        blank.controller.handle(EndJog(f"p{number}"), blank.clock.now())
+    assert refusal(blank, press("p1199")) == refusal(blank, press("p300")) == ["press_dead"]
+    assert refusal(blank, press("p0", 3)) == ["press_dead"]
+
+
 def test_one_owner_at_a_time_and_a_refused_press_stays_dead(blank: Plant) -> None:
     blank.ask(press("p1"))
     assert refusal(blank, press("p2", direction=-1)) == ["busy"]
