@@ -375,7 +375,10 @@ def test_service_moves_slowly_and_only_while_the_area_is_clear() -> None:
     plant.forward(3.0)
     assert plant.snapshot.service is not None
     assert plant.reasons("move") == plant.reasons("jog") == {"area_not_clear"}
-    assert "in_service" in plant.reasons("track") & plant.reasons("park") & plant.reasons("stow")
+    for action in ("step", "home", "test_direction", "test_scale", "test_stop", "test_communication_loss"):
+        assert "area_not_clear" in plant.reasons(action), action
+    for action in ("track", "park", "stow", "resume", "go_to_start", "run_show", "resume_show"):
+        assert "in_service" in plant.reasons(action), action
     plant.ask(ConfirmAreaClear())
     plant.ask(Move(Orientation(20.0, 20.0)))
     plant.forward(5.0)
