@@ -7,7 +7,7 @@ import pytest
 
 from app.alarms.conditions import SiteHealth, of_tracker
 from app.tracker.commands.commands import Command, CommandRejected, Home, SetHome, Stop, UndoHome
-from app.tracker.memory.memory import Pointing, Sighting, StepName
+from app.tracker.memory.memory import CommissioningLock, Pointing, Sighting, StepName
 from app.tracker.settings.axes import Axis
 from app.tracker.settings.config import DriveConfig, DriveKind
 from app.tracker.state.snapshot import ActivityName, EventKind, Snapshot
@@ -55,6 +55,14 @@ def test_zero_needs_axes_at_rest_a_drive_and_an_axis() -> None:
     script.tick()
     with pytest.raises(CommandRejected, match="are still moving"):
         script.ask(SetHome())
+
+
+def test_locked_settings_keep_the_home_position_that_was_set() -> None:
+    plant = Plant(replace(READY, settings_lock=CommissioningLock("ada", MORNING)))
+    plant.tick()
+    assert "settings_locked" in plant.reasons("set_home") & plant.reasons("undo_home")
+    with pytest.raises(CommandRejected, match="locked"):
+        plant.ask(SetHome())
 
 
 @pytest.mark.parametrize(
