@@ -53,8 +53,9 @@ def test_zero_needs_axes_at_rest_a_drive_and_an_axis() -> None:
     script = Scripted()
     script.sees(azimuth=replace(script.reading.azimuth, moving=True))
     script.tick()
-    with pytest.raises(CommandRejected, match="are still moving"):
-        script.ask(SetHome())
+    for command in (SetHome(), Home()):
+        with pytest.raises(CommandRejected, match="are still moving"):
+            script.ask(command)
 
 
 def test_locked_settings_keep_the_home_position_that_was_set() -> None:
