@@ -314,6 +314,7 @@ def test_what_needs_calm_is_refused_in_a_storm_and_tracking_may_be_switched_on()
         with pytest.raises(CommandRejected) as refused:
             plant.ask(command)
         assert "stow_demanded" in {reason.code for reason in refused.value.reasons}
+    assert "stow_demanded" in plant.reasons("run_show") & plant.reasons("resume_show")
     plant.ask(Track())
     plant.forward(60)
     assert doing(plant) is ActivityName.STOWED
@@ -395,6 +396,8 @@ def test_a_maintenance_lock_forbids_the_stow_too_and_outlives_a_restart() -> Non
         with pytest.raises(CommandRejected) as refused:
             plant.ask(command)
         assert "maintenance_inhibit" in {one.code for one in refused.value.reasons}
+    for action in ("home", "resume", "go_to_start", "run_show", "resume_show"):
+        assert "maintenance_inhibit" in plant.reasons(action), action
     fresh = restarted(plant)
     fresh.forward(30)
     assert fresh.snapshot.lock is not None
