@@ -53,7 +53,7 @@ def test_zero_needs_axes_at_rest_a_drive_and_an_axis() -> None:
     script = Scripted()
     script.sees(azimuth=replace(script.reading.azimuth, moving=True))
     script.tick()
-    for command in (SetHome(), Home()):
+    for command in (SetHome(), Home(), UndoHome()):
         with pytest.raises(CommandRejected, match="are still moving"):
             script.ask(command)
 
