@@ -315,16 +315,6 @@ async def test_closing_tells_who_waits() -> None:
             await read(link)
 
 
-async def test_a_connection_lost_at_rest_is_renewed_by_the_next_read() -> None:
-    async with linked(lambda request: [right(request)]) as (link, server, _):
-        await read(link)
-        port = server.port
-        await server.close()
-        await asyncio.sleep(0.02)
-        await server.start(port)
-        assert await read(link) == RIGHT
-
-
 async def test_an_error_that_nobody_foresaw_ends_one_request_and_not_the_link() -> None:
     async with linked(good) as (link, server, _):
         with pytest.raises(DriveError, match="unexpected"):

@@ -108,7 +108,6 @@ REFUSED = {
     "a span over a gap": (pack(">BHH", 3, 38, 14), 2),
     "a span over the last address": (pack(">BHH", 3, 0xFFFF, 2), 2),
     "input registers without a map": (pack(">BHH", 4, 700, 1), 2),
-    "a long request": (pack(">BHHB", 6, 20, 1, 0), 3),
     "a coil that is not there": (pack(">BHH", 1, 1, 1), 2),
     "a discrete input that is not there": (pack(">BHH", 2, 30, 3), 2),
     "writing what can only be read": (pack(">BHH", 6, 8, 1), 2),
