@@ -46,8 +46,6 @@ EXCEPTIONS = {
     "peers/modbus_tk_server.py": "a process of its own that serves until it is killed",
     "patience.py": "the one bound of all waits, and the pause between two looks",
 }
-TO_BE_MOVED: frozenset[str] = frozenset()
-"""Files of tests/browser that still go by the real clock: this list only shrinks."""
 
 SENTENCE = (
     "Use a virtual clock, the patient loop, or the page's clock; wait for an event with PATIENCE_S "
@@ -108,13 +106,13 @@ def faults() -> Iterator[str]:
         name = path.relative_to(TESTS).as_posix()
         if name.partition("/")[0] in JUDGE_TIME:
             continue
-        found, excused = offences(path), name in EXCEPTIONS or name in TO_BE_MOVED
+        found, excused = offences(path), name in EXCEPTIONS
         for line, told in () if excused else found:
             wrong = True
             yield f"tests/{name}:{line}: {told.splitlines()[0][:90]}"
         if excused and not found:
             yield f"tests/{name} is clean: take it off the list in checks/clocks.py."
-    for name in (*EXCEPTIONS, *TO_BE_MOVED):
+    for name in EXCEPTIONS:
         if not (TESTS / name).exists():
             yield f"tests/{name} is gone: take it off the list in checks/clocks.py."
     if wrong:

@@ -1,24 +1,14 @@
 """Whoever is turned away at the door is in the record of access, and a flood of them does not fill it."""
 
-from collections.abc import AsyncIterator, Callable
+from collections.abc import Callable
 from datetime import timedelta
 from pathlib import Path
-
-import pytest
 
 from app.access.roles import Role
 from app.access.tokens import Scope
 from app.base.clock import Clock
 from tests.web.office import HERE, Office
 from tests.web.test_gate import made
-
-
-@pytest.fixture
-async def office(tmp_path: Path) -> AsyncIterator[Office]:
-    office = Office(tmp_path)
-    async with office.app.router.lifespan_context(office.app):
-        await office.hire(*Role)
-        yield office
 
 
 async def recorded(office: Office, is_there: Callable[[dict[str, str]], bool]) -> dict[str, str]:

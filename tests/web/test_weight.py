@@ -1,8 +1,6 @@
 """What is of weight wants a password typed within 5 minutes: every such route, told here once more."""
 
-from collections.abc import AsyncIterator
 from datetime import timedelta
-from pathlib import Path
 
 import pytest
 
@@ -38,14 +36,6 @@ DRIVES_AND_LIMITS = [
 ]
 OF_WEIGHT = [*ACCOUNTS, *NETWORK, *EVERYTHING, *DRIVES_AND_LIMITS]
 """Written out, and not read from the table that the gate obeys: who takes one away there finds it here."""
-
-
-@pytest.fixture
-async def office(tmp_path: Path) -> AsyncIterator[Office]:
-    office = Office(tmp_path)
-    async with office.app.router.lifespan_context(office.app):
-        await office.hire(*Role)
-        yield office
 
 
 async def signed_in(office: Office, role: Role) -> dict[str, str]:

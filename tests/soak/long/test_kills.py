@@ -81,7 +81,7 @@ class Killing:
         await asyncio.sleep(self.dice.uniform(0.0, LATEST_RENAMING_S))
         at = self.machine.kill()
         await asyncio.gather(*(one for one in (pressing, renaming) if one), return_exceptions=True)
-        rested_s = await asyncio.to_thread(self.eyes.rest_after, at)
+        rested_s = await asyncio.to_thread(self.eyes.first_rest_after, at)
         assert rested_s <= LONGEST_S + self.eyes.longest_blink_s(at)
         await self.machine.forget()
         assert not self.eyes.moved_after(at + rested_s)

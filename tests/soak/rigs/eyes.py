@@ -107,6 +107,13 @@ class Eyes:
             time.sleep(JUDGE_EVERY_S)
 
     def rest_after(self, at: float, *, within_s: float = 5.0) -> float:
+        """Return how long after an instant the panel turned for the last time, once it stands still."""
+        while self._stands_since() > self.now.at - RESTS_AFTER_S or self.now.at < at + RESTS_AFTER_S:
+            assert self.now.at < at + within_s, "the panel still turns"
+            time.sleep(JUDGE_EVERY_S)
+        return max(0.0, self._last_turn() - at)
+
+    def first_rest_after(self, at: float, *, within_s: float = 5.0) -> float:
         """Return how long after an instant the panel stood still for the first time."""
         give_up = at + within_s
         while (rest := self._first_rest(at)) is None:
@@ -130,6 +137,23 @@ class Eyes:
             elif sight.at - stood.at >= RESTS_AFTER_S:
                 return stood
         return None
+
+    def _stands_since(self) -> float:
+        """Return since when the panel was seen where it is; while it does not look it sees nobody stand."""
+        sights = list(self.sights)
+        since = sights[-1]
+        for sight in reversed(sights):
+            if sight.is_apart(sights[-1]):
+                break
+            since = sight
+        return since.at
+
+    def _last_turn(self) -> float:
+        sights = list(self.sights)
+        for sight in reversed(sights):
+            if sight.is_apart(sights[-1]):
+                return sight.at
+        return sights[0].at
 
     def _watch(self) -> None:
         while not self._over.is_set():

@@ -1,4 +1,4 @@
-"""The machine killed at random instants of tracking, the panel killed while a show runs."""
+"""The machine killed at random instants of tracking and of a show, the panel killed under both."""
 
 import os
 import random
@@ -43,14 +43,30 @@ class Killing:
 
         The zero is trusted still, so that tracking goes on by itself after the restart.
         """
-        self.integrator.post("/stop")
+        self._stop()
         self.integrator.until_allowed("move")
         away = self.integrator.snapshot()["sun"]["azimuth_deg"] - AWAY_DEG
         self.integrator.command("move", azimuth_deg=away, elevation_deg=5.0)
-        self.integrator.until(lambda seen: seen["activity"] == "holding", "the panel is away from the sun")
+        self._until(lambda seen: seen["activity"] == "holding", "the panel is away from the sun")
         self.integrator.command("track")
         rested_s = self._kill()
-        self.integrator.until(lambda seen: seen["activity"] == "tracking", "tracking goes on by itself")
+        self._until(lambda seen: seen["activity"] == "tracking", "tracking goes on by itself")
+        return rested_s
+
+    def kill_show(self) -> float:
+        """Kill the machine in a show; return after how long the axes stood, all else checked."""
+        self._stop()
+        self.integrator.until_allowed("go_to_start")
+        before = len(self.shows())
+        self.begin_show(20.0)
+        rested_s = self._kill()
+        shows = self.shows()
+        assert len(shows) == before + 1
+        assert all(show["ended_at"] is not None for show in shows)
+        assert "interrupted" in shows[0]["outcome"]
+        assert shows[0]["sample_count"] == self._frames(shows[0]["recording_id"])["elapsed_s"].size
+        assert self.integrator.snapshot()["activity"] == "holding"
+        assert shows[0]["recording_id"] in self.integrator.journal("controller_started")[0]["data"]["cut_off"]
         return rested_s
 
     def begin_show(self, seconds: float) -> None:
@@ -86,8 +102,11 @@ class Killing:
 
     def elapsed_s(self, recording_id: str) -> np.ndarray:
         """Return when each frame of a recording was taken, seconds since it began."""
+        return self._frames(recording_id)["elapsed_s"]
+
+    def _frames(self, recording_id: str) -> dict[str, np.ndarray]:
         frames = self.integrator.get(f"/api/v1/recordings/{recording_id}/samples")
-        return np.array(frames["columns"]["elapsed_s"], dtype=np.float64)
+        return {name: np.array(values, dtype=np.float64) for name, values in frames["columns"].items()}
 
     def _kill(self) -> float:
         machines = len(self.product.starts("controller"))
@@ -106,7 +125,7 @@ class Killing:
         self.product.process.send_signal(signal.SIGSTOP)
         try:
             at = self.product.signal("controller", signal.SIGKILL)
-            return self.eyes.rest_after(at)
+            return self.eyes.first_rest_after(at)
         finally:
             self.product.process.send_signal(signal.SIGCONT)
 
@@ -123,3 +142,9 @@ class Killing:
         path = self.product.data_dir / "heliopanel.db"
         with closing(sqlite3.connect(f"file:{path}?mode=ro", uri=True)) as database:
             assert database.execute("PRAGMA quick_check").fetchall() == [("ok",)]
+
+    def _stop(self) -> None:
+        self.integrator.post("/stop")
+
+    def _until(self, reached: Any, what: str) -> None:
+        self.integrator.until(reached, what)

@@ -1,4 +1,4 @@
-"""A cut cable, a killed drive: it stops by itself, the page says why, and nothing resumes.
+"""A frozen drive, a cut cable, a killed drive: it stops by itself, the page says why, and nothing resumes.
 
 The simulated drive is a process of its own; homing is doubted exactly when it lost power in motion or forgot.
 """
@@ -77,6 +77,29 @@ def assert_still(calling: Integrator, seen: dict[str, Any]) -> None:
         assert abs(later["measured"][axis] - seen["measured"][axis]) < STEP_DEG
 
 
+def test_a_frozen_drive_stops_by_its_watchdog_and_keeps_its_zero(
+    integrator: Integrator, sim: DriveSim
+) -> None:
+    integrator.commission(sim.port)
+    turn_away(integrator)
+    before = integrator.snapshot()["measured"]["azimuth_deg"]
+    sim.process.send_signal(signal.SIGSTOP)
+    lost(integrator, "did not answer in time")
+    time.sleep(1.0)
+    sim.process.send_signal(signal.SIGCONT)
+    seen = back(integrator, "its watchdog")
+    assert seen["homed"] is True
+    assert seen["measured"]["azimuth_deg"] - before < 6.0 * (WATCHDOG_S + LATEST_FEED_S + RAMP_S + 0.2)
+    assert_still(integrator, seen)
+    page = integrator.http.get("/trackers/T1/drive-tests").text
+    assert "answers again" in page
+    integrator.command("move", azimuth_deg=20.0, elevation_deg=10.0)
+    assert "watchdog" not in told(integrator.snapshot())
+    integrator.post("/stop")
+    integrator.until(lambda seen: seen["activity"] == "holding", "the panel is at rest")
+    integrator.until(lambda seen: seen["activity"] == "holding", "the axes rest")
+
+
 @pytest.mark.fault(1)
 def test_a_cut_cable_leaves_a_drive_that_stops_itself(
     integrator: Integrator, sim: DriveSim, fault: FaultResult
@@ -114,10 +137,16 @@ def test_a_drive_is_simulated_with_faults_from_the_start() -> None:
         assert process.stdout is not None
         line = process.stdout.readline().decode()
         port = int(line.split("127.0.0.1:")[1].split(",")[0])
-        drive = DriveFactory(SystemClock()).make(config_for(port))
-        assert asyncio.run(drive.read()).fault_code == 12
+        assert asyncio.run(fault_code(port)) == 12
         process.send_signal(signal.SIGTERM)
         assert process.wait(10.0) == 0
+
+
+async def fault_code(port: int) -> int | None:
+    drive = DriveFactory(SystemClock()).make(config_for(port))
+    code = (await drive.read()).fault_code
+    await drive.close()
+    return code
 
 
 def test_a_killed_drive_loses_its_zero_exactly_when_it_lost_its_place(
