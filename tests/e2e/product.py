@@ -79,7 +79,18 @@ class Product:
 
     @classmethod
     def start(cls, data_dir: Path, *, command: Sequence[str] = (), **more: str) -> "Product":
-        """Return once panel, machine and database answer; `more` are further settings.
+        """Return once panel, machine and database answer; `more` are further settings."""
+        product = cls.begin(data_dir, command=command, **more)
+        try:
+            product.until_ready()
+        except TimeoutError:
+            product.stop()
+            raise
+        return product
+
+    @classmethod
+    def begin(cls, data_dir: Path, *, command: Sequence[str] = (), **more: str) -> "Product":
+        """Return while it starts.
 
         An installed product finds its modules compiled; this one keeps them compiled too, for the next start.
         """
@@ -100,11 +111,6 @@ class Product:
         product = cls(data_dir, port, process)
         product.reading = threading.Thread(target=product._read, daemon=True)
         product.reading.start()
-        try:
-            product.until_ready()
-        except TimeoutError:
-            product.stop()
-            raise
         return product
 
     @property

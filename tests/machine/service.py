@@ -143,11 +143,16 @@ class Service(Linked):
 
     @classmethod
     async def start(cls, data_dir: Path, *, tick_ms: int = 100) -> "Service":
-        product = await asyncio.to_thread(Product.start, data_dir, tick_ms=str(tick_ms))
+        """Return once the controller is heard; its panel may still start."""
+        product = Product.begin(data_dir, tick_ms=str(tick_ms))
         service = cls(product, PatientLink(data_dir / "machine.sock"), data_dir)
-        await service.link.start()
-        await service.link.watch(frozenset({"T1"}))
-        await eventually(lambda: service.link.latest() is not None)
+        try:
+            await service.link.start()
+            await service.link.watch(frozenset({"T1"}))
+            await eventually(lambda: service.link.latest() is not None)
+        except BaseException:
+            await service.stop()
+            raise
         return service
 
     @property

@@ -177,6 +177,7 @@ async def field(
         work = Fieldwork(service, size)
         noting = asyncio.create_task(work.note_events())
         try:
+            await service.until_served()
             await eventually(
                 lambda: len(getattr(work.latest, "trackers", ())) == size.trackers, within_s=LIMIT_S
             )

@@ -5,15 +5,27 @@ from collections.abc import Iterator
 
 import httpx
 import pytest
-from playwright.sync_api import Locator, Page, expect
+from playwright.sync_api import Browser, Locator, Page, expect, sync_playwright
 
-from tests.browser.conftest import browser, picture
+from tests.browser.conftest import CHROMIUM, FLAGS
 from tests.browser.hands import Finger, Hands
 from tests.browser.walking import Walker, add_tracker, rooms, service, walker
 from tests.e2e.chromium import PAGE_READY
+from tests.e2e.letters import environment
 from tests.e2e.product import DriveSim
+from tests.patience import PATIENCE_MS
 
-__all__ = ["browser", "picture", "rooms", "service", "walker"]
+__all__ = ["rooms", "service", "walker"]
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    """Run a browser for this file: Playwright's loop must have ended before the next file runs its own."""
+    expect.set_options(timeout=PATIENCE_MS)
+    with sync_playwright() as playwright:
+        started = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS, env=environment())
+        yield started
+        started.close()
 
 
 @pytest.fixture
