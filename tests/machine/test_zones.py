@@ -43,6 +43,7 @@ def data_dir(tmp_path: Path) -> Path:
 async def test_without_time_zones_it_starts_shows_utc_and_says_so(data_dir: Path, fault: FaultResult) -> None:
     service = await Service.start(data_dir)
     try:
+        await service.until_served()
         await eventually(lambda: "zones_missing" in service.alarms())
         async with httpx.AsyncClient(base_url=f"http://127.0.0.1:{service.port}") as client:
             page = await client.get("/")
