@@ -61,6 +61,7 @@ class SiteHealth:
 DISK_LOW = Band(-500.0, -600.0)
 DISK_FULL = Band(-50.0, -80.0)
 LATE = Band(0.05, 0.02)
+LINK_IS_POOR = "link_poor"
 LINK_POOR = Band(0.05, 0.01)
 
 
@@ -72,14 +73,14 @@ def of_site(site: SiteSnapshot, health: SiteHealth, before: frozenset[str]) -> t
 def of_tracker(tracker: Snapshot, health: SiteHealth, before: frozenset[str]) -> tuple[Condition, ...]:
     """Return every condition of one tracker; `before` are those that were present, for the deadbands."""
     unread = health.unread.get(tracker.tracker_id)
-    return _once((*_told_by_tracker(tracker), *_of_link(tracker, unread, before)))
+    return _once((*told_by_tracker(tracker), *_of_link(tracker, unread, before)))
 
 
 def _once(found: tuple[Condition, ...]) -> tuple[Condition, ...]:
     return tuple({one.alarm_id: one for one in reversed(found)}.values())[::-1]
 
 
-def _told_by_tracker(tracker: Snapshot) -> Iterator[Condition]:
+def told_by_tracker(tracker: Snapshot) -> Iterator[Condition]:
     """Yield what a tracker tells; a fault is always one, under its own code or as any fault."""
     if tracker.not_stowed is not None:
         yield _told(tracker, tracker.not_stowed)
@@ -105,7 +106,7 @@ def _of_link(tracker: Snapshot, unread: float | None, before: frozenset[str]) ->
             "{value} % of the readings of the last minute failed.", value=with_format(100.0 * unread, ".0f")
         )
     )
-    found = Condition("link_poor", tracker.tracker_id, tracker.name, text)
+    found = Condition(LINK_IS_POOR, tracker.tracker_id, tracker.name, text)
     if LINK_POOR.holds(unread, before=found.alarm_id in before):
         yield found
 

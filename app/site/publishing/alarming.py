@@ -1,6 +1,6 @@
 """The site's books of alarms: fed with what is told of each tracker, stored behind the loop, told to all."""
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import datetime, timedelta
 from typing import assert_never
@@ -115,6 +115,10 @@ class AlarmDesk:
     def _opened(self, alarm_id: str) -> tuple[Place, Book, datetime]:
         place = alarm_id.partition("@")[2] or None
         return place, self.books.of(place), self.model.now()
+
+    def of(self, tracker_id: str) -> Mapping[str, Alarm]:
+        """Return the alarms of a tracker by `alarm_id`."""
+        return self.books.of(tracker_id).alarms
 
     def shown(self, at: datetime) -> Shown:
         """Return the most urgent alarms and how many stand; the same object as before if none changed."""

@@ -10,6 +10,7 @@ from dataclasses import replace
 from datetime import datetime, timedelta
 from typing import Any
 
+from app.alarms.urgency import messages_of, newest, site_messages
 from app.base.clock import set_or_at
 from app.base.logs import get_logger
 from app.link.messages import Order, StopAll
@@ -57,6 +58,7 @@ class Publisher:
         self._told: dict[str, datetime] = {}
         self._trackers: dict[str, Snapshot | None] = {}
         self._troubles: dict[str, Reason | None] = {}
+        self._last: dict[str, Event | None] = {}
         self._watchers: dict[object, frozenset[str]] = {}
         self._watched: frozenset[str] = frozenset()
         self._arrivals = -1
@@ -143,9 +145,16 @@ class Publisher:
         self._published_at = self._model.clock.now()
         site = self._site(at)
         happened += self._alarms.judge(site, changed, at_once=bool(happened))
+        self._remember(happened)
+        changed = tuple(map(self._with_messages, changed))
         alarms, counts = self._alarms.shown(at)
+        trackers = tuple(filter(None, self._trackers.values()))
         site = replace(
-            site, trackers=tuple(filter(None, self._trackers.values())), alarms=alarms, alarm_counts=counts
+            site,
+            trackers=trackers,
+            alarms=alarms,
+            alarm_counts=counts,
+            messages=site_messages(trackers, alarms),
         )
         self.newest = site
         self._outlet.publish(site, happened, changed, arrivals=arrived is not None)
@@ -158,9 +167,20 @@ class Publisher:
             if loop is not None:
                 self._told.pop(tracker_id, None)
                 self._told[tracker_id] = now
-                snapshot = self._model.snapshot(loop, at, asked=tracker_id in self._watched)
-                self._trackers[tracker_id] = snapshot
-                yield snapshot
+                yield self._model.snapshot(loop, at, asked=tracker_id in self._watched)
+
+    def _remember(self, events: Iterable[Event]) -> None:
+        """Note the last thing that happened to each tracker."""
+        for event in events:
+            if event.tracker_id is not None:
+                self._last[event.tracker_id] = newest(self._last.get(event.tracker_id), event)
+
+    def _with_messages(self, snapshot: Snapshot) -> Snapshot:
+        """Return a tracker with what to know about it, and tell it so from now on."""
+        place = snapshot.tracker_id
+        messages = messages_of(snapshot, self._alarms.of(place), self._last.get(place))
+        self._trackers[place] = told = replace(snapshot, messages=messages)
+        return told
 
     def _arrived(self) -> tuple[str, ...] | None:
         """Follow the site's trackers, in their order, and return those that came; None: none came or went."""
@@ -172,6 +192,7 @@ class Publisher:
         for tracker_id in self._told.keys() - self._trackers.keys():
             del self._told[tracker_id]
         self._troubles = {name: one for name, one in self._troubles.items() if name in self._trackers}
+        self._last = {name: one for name, one in self._last.items() if name in self._trackers}
         return came
 
     def _site(self, at: datetime) -> SiteSnapshot:

@@ -23,6 +23,7 @@ from app.tracker.values.actors import CONTROLLER
 from app.tracker.values.alarm_words import AlarmCounts, AlarmNow
 from app.tracker.values.mode import Mode
 from app.tracker.values.motion import LightReading
+from app.tracker.values.operator_message import OperatorMessage, StateWord
 from app.tracker.values.reason import Reason
 from app.tracker.weather.weather import Quality, Quantity, WeatherNow
 
@@ -155,6 +156,8 @@ class Snapshot:
     `home_lost_at` since when none is, `can_undo_home` that it was set and may be undone.
     `approaching` says of one that tracks that it has not reached the sun yet, or not again after a break.
     `warning` counts down to a motion that nobody at the machine asked for.
+    `state` is the tracker's state in a word or two; `messages` are what to know about it, the most urgent
+    first.
     """
 
     tracker_id: str
@@ -204,6 +207,8 @@ class Snapshot:
     can_undo_home: bool = False
     unreachable: Reason | None = None
     approaching: bool = False
+    state: StateWord = StateWord.AT_STANDSTILL
+    messages: tuple[OperatorMessage, ...] = ()
 
 
 class EventKind(StrEnum):
@@ -327,8 +332,9 @@ class SiteSnapshot:
     """The whole site at one instant, full every time.
 
     `boot_id` changes when the machine restarts; `sequence` grows by one with every snapshot. `alarms` are at
-    most 50, the most urgent first; `alarm_counts` tells of all. `sun_behind_horizon` says that the sun is up,
-    but behind the horizon that was entered.
+    most 50, the most urgent first; `alarm_counts` tells of all. `messages` are what is most urgent at the
+    site: one of each tracker that has an alarm of priority 1 to 3, and the site's own alarms, at most 50.
+    `sun_behind_horizon` says that the sun is up, but behind the horizon that was entered.
     """
 
     boot_id: str
@@ -344,3 +350,4 @@ class SiteSnapshot:
     alarms: tuple[AlarmNow, ...] = ()
     alarm_counts: AlarmCounts = field(default_factory=AlarmCounts)
     sun_behind_horizon: bool = False
+    messages: tuple[OperatorMessage, ...] = ()

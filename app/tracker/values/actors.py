@@ -2,6 +2,8 @@
 
 CONTROLLER = "controller"
 """The controller itself; no user may have this name."""
+LOCAL_USER = "local user"
+"""Who sits at the controller's computer while there are no users; told in the reader's language."""
 FORMERLY = "machine"
 """What former versions wrote for it."""
 

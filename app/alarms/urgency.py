@@ -1,0 +1,185 @@
+"""What is most urgent for a tracker and for the site: a list each, of which every page shows the head."""
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
+from operator import attrgetter
+
+from app.alarms.alarm import Alarm
+from app.alarms.catalogue import CATALOGUE
+from app.alarms.conditions import LINK_IS_POOR, Condition, told_by_tracker
+from app.base.message import N_, Message, Word, say
+from app.tracker.state.snapshot import Event, EventKind, Snapshot
+from app.tracker.values.actors import CONTROLLER, LOCAL_USER
+from app.tracker.values.alarm_words import CALLING, MOST_SHOWN, AlarmNow, AlarmState
+from app.tracker.values.operator_message import INFORMATION, OperatorMessage, StateWord
+from app.tracker.values.reason import Reason
+
+MOST_URGENT = 3
+"""The least urgent priority that the page of the whole site names a tracker for."""
+TOLD_OTHERWISE = frozenset(
+    (
+        EventKind.ALARM_RAISED,
+        EventKind.ALARM_RETURNED,
+        EventKind.ALARM_ACKNOWLEDGED,
+        EventKind.ALARM_SHELVED,
+        EventKind.ALARM_UNSHELVED,
+        EventKind.CONTROL_TAKEN,
+        EventKind.CONTROL_REQUESTED,
+        EventKind.CONTROL_DECLINED,
+        EventKind.CONTROL_RELEASED,
+        EventKind.MOTION_ANNOUNCED,
+        EventKind.REMOTE_WRITTEN,
+        EventKind.REMOTE_REFUSED,
+        EventKind.RECORDING_DELETED,
+        EventKind.SENSOR_INVALID,
+        EventKind.SENSOR_VALID,
+    )
+)
+"""Events that another place of the page tells, or that did nothing to the tracker."""
+ACTIVE = (AlarmState.UNACKNOWLEDGED, AlarmState.ACKNOWLEDGED)
+_RANK = {word: place for place, word in enumerate(StateWord)}
+_LOCAL = OperatorMessage(
+    "local",
+    INFORMATION,
+    N_("Local: Heliopanel cannot move the tracker."),
+    N_("The switch at the cabinet is on local."),
+    N_("Turn it to remote to move the tracker from here. Nothing then continues automatically."),
+)
+
+
+def newest(last: Event | None, event: Event) -> Event | None:
+    """Return the last thing that happened to a tracker, after one more event.
+
+    What a stop ended is told at the same instant as the stop, which is what counts.
+    """
+    if event.kind in TOLD_OTHERWISE:
+        return last
+    of_stop = last is not None and last.kind is EventKind.STOPPED and last.at == event.at
+    return last if of_stop and event.kind is not EventKind.STOPPED else event
+
+
+def messages_of(
+    tracker: Snapshot, alarms: Mapping[str, Alarm], last: Event | None
+) -> tuple[OperatorMessage, ...]:
+    """Return what to know about a tracker, the most urgent first.
+
+    `alarms` are those of the tracker by `alarm_id`: one that was shelved, or is suppressed, is not told.
+    A motion that is announced comes after what has priority 1, a stop by somebody before what is waited for.
+    """
+    urgent = sorted(_alarms(tracker, alarms), key=attrgetter("priority"))
+    first = sum(1 for message in urgent if message.priority == 1)
+    return (*urgent[:first], *_announced(tracker), *urgent[first:], *_information(tracker, last))
+
+
+def _alarms(tracker: Snapshot, alarms: Mapping[str, Alarm]) -> Iterator[OperatorMessage]:
+    """Yield the conditions that are present now, each once, though its alarm may not be raised yet."""
+    seen = set[str]()
+    poor = (_condition(alarm) for alarm in alarms.values() if alarm.active and alarm.code == LINK_IS_POOR)
+    for condition in (*told_by_tracker(tracker), *poor):
+        alarm, entry = alarms.get(condition.alarm_id), CATALOGUE[condition.code]
+        if condition.code in seen or (alarm is not None and alarm.silent):
+            continue
+        seen.add(condition.code)
+        yield OperatorMessage(
+            condition.code,
+            entry.priority,
+            entry.title,
+            condition.message,
+            condition.hint or entry.do,
+            since=alarm.raised_at if alarm is not None and alarm.active else None,
+            alarm_id=condition.alarm_id,
+            calls=alarm is not None and alarm.state in CALLING,
+        )
+
+
+def _condition(alarm: Alarm) -> Condition:
+    return Condition(alarm.code, alarm.tracker_id, alarm.where, alarm.message, alarm.hint)
+
+
+def _announced(tracker: Snapshot) -> Iterator[OperatorMessage]:
+    if tracker.warning is not None:
+        yield _of(tracker.warning.reason)
+
+
+def _information(tracker: Snapshot, last: Event | None) -> Iterator[OperatorMessage]:
+    """Yield what is no alarm: who else has a say, what is waited for, what happened last, what to know."""
+    if tracker.local:
+        yield _LOCAL
+    if tracker.service is not None:
+        yield _service(tracker.service.mode.name)
+    request = tracker.control.request
+    if request is not None:
+        yield OperatorMessage(
+            "control_requested",
+            INFORMATION,
+            say("{who} requests control: {why}", who=_name(request.by), why=request.reason),
+        )
+    happened = () if last is None else (_happened(last),)
+    waits = tuple(_of(reason) for reason in tracker.waiting if reason.code not in CATALOGUE)
+    is_stop = last is not None and last.kind is EventKind.STOPPED
+    yield from (*happened, *waits) if is_stop else (*waits, *happened)
+    yield from (_of(reason) for reason in tracker.notices if reason.code not in CATALOGUE)
+
+
+def _of(reason: Reason) -> OperatorMessage:
+    return OperatorMessage(reason.code, INFORMATION, reason.message, hint=reason.hint)
+
+
+def _service(name: str) -> OperatorMessage:
+    return OperatorMessage(
+        "service",
+        INFORMATION,
+        say("In service mode by {who}: slow jog only.", who=_name(name)),
+        hint=N_("Nothing moves until the area is confirmed clear."),
+    )
+
+
+def _happened(event: Event) -> OperatorMessage:
+    if event.kind is EventKind.STOPPED and event.actor != CONTROLLER:
+        title, by = say("Stopped by {who}", who=_name(event.actor)), ""
+    else:
+        title, by = event.message, "" if event.actor == CONTROLLER else event.actor
+    return OperatorMessage(event.kind.value, INFORMATION, title, since=event.at, by=by)
+
+
+def _name(actor: str) -> str | Message | Word:
+    """Return a user's name as it is; one who has none is told in the reader's language."""
+    return Word(LOCAL_USER) if actor == LOCAL_USER else actor
+
+
+def site_messages(trackers: Iterable[Snapshot], alarms: Iterable[AlarmNow]) -> tuple[OperatorMessage, ...]:
+    """Return what is most urgent at a site, at most 50: one message a tracker, and the site's own alarms."""
+    found = [_at(tracker) for tracker in trackers if _is_urgent(tracker)]
+    found += (_of_site(alarm) for alarm in alarms if alarm.tracker_id is None and alarm.state in ACTIVE)
+    return tuple(sorted(found, key=attrgetter("priority"))[:MOST_SHOWN])
+
+
+def by_urgency(trackers: Iterable[Snapshot]) -> list[Snapshot]:
+    """Return trackers with the most urgent first: by the priority of their first message, then by state."""
+    return sorted(trackers, key=lambda one: (first_priority(one), _RANK[one.state]))
+
+
+def first_priority(tracker: Snapshot) -> int:
+    """Return the priority of the most urgent message of a tracker, `INFORMATION` without any alarm."""
+    return tracker.messages[0].priority if tracker.messages else INFORMATION
+
+
+def _is_urgent(tracker: Snapshot) -> bool:
+    return first_priority(tracker) <= MOST_URGENT
+
+
+def _at(tracker: Snapshot) -> OperatorMessage:
+    return replace(tracker.messages[0], tracker_id=tracker.tracker_id, where=tracker.name)
+
+
+def _of_site(alarm: AlarmNow) -> OperatorMessage:
+    return OperatorMessage(
+        alarm.code,
+        alarm.priority,
+        alarm.title,
+        alarm.message,
+        alarm.do,
+        since=alarm.since,
+        alarm_id=alarm.alarm_id,
+        calls=alarm.calls,
+    )
