@@ -4,10 +4,11 @@ from collections import Counter
 from dataclasses import replace
 from datetime import datetime
 
+from app.alarms.alarm import Alarm
 from app.alarms.catalogue import CATALOGUE
 from app.alarms.view import ASIDE
 from app.link.alarm_orders import AcknowledgeAlarm, AlarmOrder, ShelveAlarm
-from app.tracker.values.alarm_words import AlarmCounts, AlarmNow, AlarmState
+from app.tracker.values.alarm_words import QUIET, AlarmCounts, AlarmNow, AlarmState
 
 
 def alarm(code: str, at: datetime, tracker_id: str | None = "T1") -> AlarmNow:
@@ -18,6 +19,21 @@ def alarm(code: str, at: datetime, tracker_id: str | None = "T1") -> AlarmNow:
         name, code, tracker_id, where, entry.priority, entry.title, f"It is {code}.", entry.do,
         AlarmState.UNACKNOWLEDGED, at,
     )  # fmt: skip
+
+
+def in_book(alarm: AlarmNow) -> Alarm:
+    """Return an alarm as the book has it."""
+    return Alarm(
+        alarm.code,
+        alarm.tracker_id,
+        alarm.where,
+        alarm.message,
+        active=alarm.state is not AlarmState.RETURNED,
+        told=True,
+        raised_at=alarm.since,
+        acknowledged_at=alarm.since if alarm.state is AlarmState.ACKNOWLEDGED else None,
+        suppressed_by="a test" if alarm.state in QUIET else "",
+    )
 
 
 def counted(alarms: tuple[AlarmNow, ...]) -> AlarmCounts:

@@ -19,6 +19,7 @@ import httpx
 import uvicorn
 from fastapi import FastAPI
 
+from app.alarms.urgency import newest, site_messages, with_messages
 from app.base.clock import Clock, SystemClock
 from app.base.message import say
 from app.base.settings import Settings
@@ -79,7 +80,7 @@ from app.tracker.values.reason import Reason
 from app.tracker.weather.weather import WeatherNow
 from app.web.documented import DocumentedApp
 from app.web.main import create_app
-from tests.fake_alarms import after, counted
+from tests.fake_alarms import after, counted, in_book
 from tests.fake_data import commissioned, made_up_sun, site_state
 from tests.fake_records import keep_record
 from tests.fake_store import FakeReader
@@ -145,6 +146,7 @@ class FakeMachine:
         self.reachable = True
         self.weather: WeatherNow | None = None
         self.alarms: tuple[AlarmNow, ...] = ()
+        self.last: dict[str, Event | None] = {}
         self.sequence = 0
         self.boot_id = "fake-boot"
         self._outlet = Outlet()
@@ -242,6 +244,9 @@ class FakeMachine:
     def emit(self, *events: Event) -> SiteSnapshot:
         """Tell every reader how things stand now."""
         self.sequence += 1
+        for event in events:
+            if event.tracker_id is not None:
+                self.last[event.tracker_id] = newest(self.last.get(event.tracker_id), event)
         snapshot = self._snapshot()
         self._outlet.publish(snapshot, events)
         return snapshot
@@ -278,14 +283,21 @@ class FakeMachine:
             time_zone=self.site.time_zone,
             clock=ClockState(clock.source, clock.offset_s, clock.source != "unset", None, clock.set_at),
             sun=made_up_sun(now),
-            trackers=tuple(tracker.snapshot(now, self.sequence) for tracker in self.trackers.values()),
+            trackers=(trackers := tuple(self._told(one, now) for one in self.trackers.values())),
             weather=self.weather,
             alarms=self.alarms,
             alarm_counts=counted(self.alarms),
+            messages=site_messages(trackers, self.alarms),
             sun_behind_horizon=self.site.horizon.hides(
                 made_up_sun(now).azimuth_deg, made_up_sun(now).elevation_deg
             ),
         )
+
+    def _told(self, tracker: FakeTracker, now: datetime) -> Snapshot:
+        """Return a tracker with what to know about it, as the controller tells it."""
+        name = tracker.config.tracker_id
+        alarms = {one.alarm_id: in_book(one) for one in self.alarms if one.tracker_id == name}
+        return with_messages(tracker.snapshot(now, self.sequence), alarms, self.last.get(name))
 
     async def metrics(self) -> MachineMetrics:
         """Return counters of a machine that has done nothing yet, with its doors in every state."""
@@ -315,7 +327,7 @@ class FakeMachine:
         """Return one tracker now."""
         if not self.reachable:
             raise MachineUnreachable("The controller service does not answer.")
-        return self._tracker(tracker_id).snapshot(self.clock.now(), self.sequence)
+        return self._told(self._tracker(tracker_id), self.clock.now())
 
     async def watch(self, tracker_ids: frozenset[str]) -> None:
         """Do nothing: actions are always told here."""

@@ -76,7 +76,7 @@ ENTRIES = (
     Entry(
         "not_stowed", 1, Group.WEATHER, N_("Not stowed"),
         N_("Wind or snow may damage the panel."),
-        N_("Remove what blocks the panel, then press Stow against wind or Stow against snow. If the "
+        N_("Remove what blocks the panel, then press Stow panel. If the "
         "panel does not move, keep everyone clear and use the manual control at the cabinet."),
         SHORT, caused_by=(Group.MOTION, Group.DRIVE),
     ),

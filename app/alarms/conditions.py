@@ -61,7 +61,6 @@ class SiteHealth:
 DISK_LOW = Band(-500.0, -600.0)
 DISK_FULL = Band(-50.0, -80.0)
 LATE = Band(0.05, 0.02)
-LINK_IS_POOR = "link_poor"
 LINK_POOR = Band(0.05, 0.01)
 
 
@@ -106,7 +105,7 @@ def _of_link(tracker: Snapshot, unread: float | None, before: frozenset[str]) ->
             "{value} % of the readings of the last minute failed.", value=with_format(100.0 * unread, ".0f")
         )
     )
-    found = Condition(LINK_IS_POOR, tracker.tracker_id, tracker.name, text)
+    found = Condition("link_poor", tracker.tracker_id, tracker.name, text)
     if LINK_POOR.holds(unread, before=found.alarm_id in before):
         yield found
 

@@ -6,9 +6,9 @@ from operator import attrgetter
 
 from app.alarms.alarm import Alarm
 from app.alarms.catalogue import CATALOGUE
-from app.alarms.conditions import LINK_IS_POOR, Condition, told_by_tracker
+from app.alarms.conditions import Condition, told_by_tracker
 from app.base.message import N_, Message, Word, say
-from app.tracker.state.snapshot import Event, EventKind, Snapshot
+from app.tracker.state.snapshot import ActivityName, Event, EventKind, Snapshot
 from app.tracker.values.actors import CONTROLLER, LOCAL_USER
 from app.tracker.values.alarm_words import CALLING, MOST_SHOWN, AlarmNow, AlarmState
 from app.tracker.values.operator_message import INFORMATION, OperatorMessage, StateWord
@@ -38,6 +38,18 @@ TOLD_OTHERWISE = frozenset(
 """Events that another place of the page tells, or that did nothing to the tracker."""
 ACTIVE = (AlarmState.UNACKNOWLEDGED, AlarmState.ACKNOWLEDGED)
 _RANK = {word: place for place, word in enumerate(StateWord)}
+_WORDS = {
+    ActivityName.JOGGING: StateWord.JOGGING,
+    ActivityName.MOVING: StateWord.MOVING,
+    ActivityName.SETTING_HOME: StateWord.SETTING_HOME,
+    ActivityName.HOMING: StateWord.HOMING,
+    ActivityName.MEASURING: StateWord.DRIVE_TEST,
+    ActivityName.SHOWING: StateWord.SHOW,
+    ActivityName.STOPPING: StateWord.STOPPING,
+    ActivityName.FAULTED: StateWord.FAULT,
+    ActivityName.STOWING: StateWord.STOWING,
+    ActivityName.STOWED: StateWord.STOWED,
+}
 _LOCAL = OperatorMessage(
     "local",
     INFORMATION,
@@ -58,6 +70,44 @@ def newest(last: Event | None, event: Event) -> Event | None:
     return last if of_stop and event.kind is not EventKind.STOPPED else event
 
 
+def with_messages(tracker: Snapshot, alarms: Mapping[str, Alarm], last: Event | None) -> Snapshot:
+    """Return a tracker with its state in a word and with what to know about it, as `messages_of` has it."""
+    return replace(tracker, state=state_of(tracker), messages=messages_of(tracker, alarms, last))
+
+
+def state_of(tracker: Snapshot) -> StateWord:
+    """Return the state of a tracker: danger first, then what is not known, then what it does."""
+    if tracker.not_stowed is not None:
+        return StateWord.NOT_STOWED
+    if tracker.fault is not None:
+        return StateWord.FAULT
+    if tracker.unreachable is not None:
+        return StateWord.NO_CONNECTION
+    if tracker.activity is ActivityName.HOLDING:
+        return _holding(tracker)
+    if tracker.activity is ActivityName.TRACKING:
+        return _tracking(tracker)
+    return _WORDS[tracker.activity]
+
+
+def _tracking(tracker: Snapshot) -> StateWord:
+    if tracker.approaching:
+        return StateWord.MOVING_TO_THE_SUN
+    return StateWord.WAITING if tracker.waiting else StateWord.TRACKING
+
+
+def _holding(tracker: Snapshot) -> StateWord:
+    """Return why a tracker at standstill stays there."""
+    reasons = (
+        (tracker.local, StateWord.LOCAL),
+        (tracker.lock is not None, StateWord.INHIBITED),
+        (tracker.service is not None, StateWord.SERVICE_MODE),
+        (bool(tracker.waiting), StateWord.INTERRUPTED),
+        (not tracker.homed, StateWord.NOT_HOMED),
+    )
+    return next((word for holds, word in reasons if holds), StateWord.AT_STANDSTILL)
+
+
 def messages_of(
     tracker: Snapshot, alarms: Mapping[str, Alarm], last: Event | None
 ) -> tuple[OperatorMessage, ...]:
@@ -72,24 +122,31 @@ def messages_of(
 
 
 def _alarms(tracker: Snapshot, alarms: Mapping[str, Alarm]) -> Iterator[OperatorMessage]:
-    """Yield the conditions that are present now, each once, though its alarm may not be raised yet."""
-    seen = set[str]()
-    poor = (_condition(alarm) for alarm in alarms.values() if alarm.active and alarm.code == LINK_IS_POOR)
-    for condition in (*told_by_tracker(tracker), *poor):
-        alarm, entry = alarms.get(condition.alarm_id), CATALOGUE[condition.code]
-        if condition.code in seen or (alarm is not None and alarm.silent):
-            continue
-        seen.add(condition.code)
-        yield OperatorMessage(
-            condition.code,
-            entry.priority,
-            entry.title,
-            condition.message,
-            condition.hint or entry.do,
-            since=alarm.raised_at if alarm is not None and alarm.active else None,
-            alarm_id=condition.alarm_id,
-            calls=alarm is not None and alarm.state in CALLING,
-        )
+    """Yield what is present now, each once: an alarm that is raised, and a condition that may not be yet."""
+    present: dict[str, Condition] = {}
+    for condition in told_by_tracker(tracker):
+        present.setdefault(condition.alarm_id, condition)
+    for name, alarm in alarms.items():
+        if alarm.active and not alarm.gone_since:
+            present.setdefault(name, _condition(alarm))
+    for name, condition in present.items():
+        known = alarms.get(name)
+        if known is None or not known.silent:
+            yield _of_condition(condition, known)
+
+
+def _of_condition(condition: Condition, alarm: Alarm | None) -> OperatorMessage:
+    entry = CATALOGUE[condition.code]
+    return OperatorMessage(
+        condition.code,
+        entry.priority,
+        entry.title,
+        condition.message,
+        condition.hint or entry.do,
+        since=alarm.raised_at if alarm is not None and alarm.active else None,
+        alarm_id=condition.alarm_id,
+        calls=alarm is not None and alarm.state in CALLING,
+    )
 
 
 def _condition(alarm: Alarm) -> Condition:
@@ -165,7 +222,7 @@ def first_priority(tracker: Snapshot) -> int:
 
 
 def _is_urgent(tracker: Snapshot) -> bool:
-    return first_priority(tracker) <= MOST_URGENT
+    return first_priority(tracker) <= MOST_URGENT or tracker.local
 
 
 def _at(tracker: Snapshot) -> OperatorMessage:

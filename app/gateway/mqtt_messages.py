@@ -17,7 +17,7 @@ ADDRESS = re.compile(r"[\w-]{1,40}", re.ASCII)
 """What may stand where a topic names a tracker; whether there is one is for the site to say."""
 ONLINE, OFFLINE = "online", "offline"
 COLUMNS = (
-    "tracker_id", "activity", "tracking_on", "target_azimuth_deg", "target_elevation_deg",
+    "tracker_id", "state", "activity", "tracking_on", "target_azimuth_deg", "target_elevation_deg",
     "measured_azimuth_deg", "measured_elevation_deg", "following_error_deg", "off_sun_deg",
     "position_age_s", "in_position", "homed", "fault",
 )  # fmt: skip
@@ -94,6 +94,7 @@ def tracker_payload(site: SiteSnapshot, tracker: Snapshot) -> bytes:
         "mode": tracker.mode,
         "fault": None if fault is None else asdict(fault),
         "waiting": [asdict(reason) for reason in tracker.waiting],
+        "message": asdict(tracker.messages[0]) if tracker.messages else None,
     }
     return orjson.dumps(told)
 
@@ -127,6 +128,7 @@ def site_payload(site: SiteSnapshot) -> bytes:
         "sun_elevation_deg": None if sun is None else sun.apparent_elevation_deg,
         "weather": None if weather is None else asdict(weather),
         "alarm_counts": asdict(site.alarm_counts),
+        "message": asdict(site.messages[0]) if site.messages else None,
         "weather_age_s": None if site.weather is None else site.weather.age_s,
         "trackers": [tracker.tracker_id for tracker in site.trackers],
     }
@@ -153,6 +155,7 @@ def _values(tracker: Snapshot) -> dict[str, Any]:
     azimuth_deg, elevation_deg = _angles(tracker.measured)
     values: Sequence[object] = (
         tracker.tracker_id,
+        tracker.state,
         tracker.activity,
         tracker.tracking_on,
         target_azimuth_deg,

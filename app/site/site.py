@@ -207,7 +207,7 @@ class Site:
 
     async def tracker(self, tracker_id: str) -> Snapshot:
         """Return one tracker now, with what may be asked of it."""
-        return self.model.snapshot(self.model.tracker(tracker_id), self.model.now())
+        return self.publisher.told(self.model.snapshot(self.model.tracker(tracker_id), self.model.now()))
 
     async def watch(self, tracker_ids: frozenset[str], who: object = None) -> None:
         """Have snapshots of these trackers told with their actions, as long as one who watches them does."""

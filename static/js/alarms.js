@@ -2,7 +2,6 @@
 
 import { facts } from "./facts.js";
 import { live } from "./live.js";
-import { clockTime } from "./format.js";
 import { _ } from "./i18n.js";
 
 const SOUND = "heliopanel-sound";
@@ -26,26 +25,11 @@ function paintUnknown() {
   one("alarm-strip").querySelector(".alarm-bell").dataset.number = unknown ? "?" : "0";
   if (!unknown) return;
   setText("alarm-words", _("Alarm status unavailable"));
-  one("alarm-new").hidden = true;
   for (const item of document.querySelectorAll("[data-count] b")) item.textContent = "?";
 }
 
 function setText(id, text) {
   if (one(id).textContent !== text) one(id).textContent = text;
-}
-
-function paintFirst(site) {
-  const first = site.alarms.find((alarm) => calls(alarm) && !alarm.collapsed);
-  for (const shape of document.querySelectorAll("[data-first-shape]")) {
-    shape.hidden = Number(shape.dataset.firstShape) !== first?.priority;
-  }
-  one("alarm-new").hidden = !first;
-  setText("alarm-first-title", first ? headingOf(first) : "");
-  setText("alarm-first-where", first ? `${first.where} · ${clockTime(first.since, live.zone)}` : "");
-  const form = one("alarm-ack");
-  form.querySelector("[name=alarm_id]").value = first?.alarm_id ?? "";
-  const key = form.querySelector("button");
-  if (!key.closest("[data-denied]")) key.disabled = !first || live.link !== "live";
 }
 
 function paintCounts(site) {
@@ -115,7 +99,6 @@ function sound() {
 export function start() {
   if (!one("alarm-strip")) return;
   live.on("state", ({ site }) => {
-    paintFirst(site);
     paintCounts(site);
     sound();
   });

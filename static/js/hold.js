@@ -75,18 +75,6 @@ document.addEventListener("click", (event) => {
   event.stopPropagation();
 }, { capture: true });
 
-// That the home position was set is said until it is undone, by whomever, or the axes are turned away from it.
-const outcome = document.getElementById("zero-outcome");
-let told = null;
-let undoable = false;
-document.addEventListener("htmx:after:swap", ({ detail }) => {
-  if (detail?.ctx?.sourceElement?.closest?.("form")?.contains(outcome)) told = outcome.querySelector(".outcome-ok");
-});
-live.on("state", ({ tracker }) => {
-  if (undoable && !tracker?.can_undo_home) told?.remove();
-  undoable = Boolean(tracker?.can_undo_home);
-});
-
 // Once an axis was moved by hand, setting the home position is what this page is for.
 live.on("state", ({ tracker }) => {
   if (!facts.activities.by_hand.includes(tracker?.activity)) return;

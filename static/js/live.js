@@ -194,28 +194,14 @@ function paintActions() {
   for (const list of document.querySelectorAll("[data-list]")) fillReasons(list, scopeOf(list)?.[list.dataset.list] ?? []);
 }
 
-function paintBanners() {
-  const fault = document.getElementById("fault-banner");
-  const waiting = document.getElementById("waiting-banner");
-  if (fault) fault.hidden = !live.tracker?.fault;
-  if (waiting) waiting.hidden = !live.tracker?.waiting.length;
-  paintLocal();
+// Of a drive that does not answer, what it reported last.
+function paintStale() {
   for (const note of document.querySelectorAll("[data-stale-note]")) {
     const one = scopeOf(note);
     const lost = Boolean(one && !one.measured);
     note.hidden = !lost;
     if (lost) note.textContent = lastSeen(one);
   }
-}
-
-// Pages of the whole site name the trackers whose cabinet is on local; those of one tracker have a banner of it.
-function paintLocal() {
-  const banner = document.getElementById("local-banner");
-  if (!banner) return;
-  const names = live.site.trackers.filter((one) => one.local).map((one) => one.tracker_id).join(", ");
-  banner.hidden = !names;
-  const words = document.getElementById("local-names");
-  if (words.textContent !== names) words.textContent = names;
 }
 
 function lastSeen(one) {
@@ -260,7 +246,7 @@ export function paint() {
   if (!live.site) return;
   paintValues();
   paintActions();
-  paintBanners();
+  paintStale();
 }
 
 export function start() {

@@ -72,12 +72,12 @@ def test_live_values_stay_in_the_language_of_the_page(opened: Opened, plant: Pla
     page = opened("/trackers/T1")
     speak(page, "de")
     german = catalogue_of("de")
-    said = page.locator(".strip-activity [data-live]")
+    said = page.locator(".says-text [data-live]")
     site = plant.machine.latest()
     assert site is not None
     words = site.trackers[0].activity_text
     expect(said).to_have_text(german.said(words))
-    page.evaluate("document.querySelector('.strip-activity [data-live]').textContent = ''")
+    page.evaluate("document.querySelector('.says-text [data-live]').textContent = ''")
     expect(said).to_have_text(german.said(words))
     assert german.said(words) != words
 

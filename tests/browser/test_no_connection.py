@@ -107,11 +107,11 @@ def test_stop_that_nobody_confirms_in_time_is_told_until_it_is_confirmed(stage: 
 
 def test_no_connection_and_alarms_stay_in_sight_below(stage: Stage) -> None:
     page = stage.open("/trackers/T1/settings", "phone", allow=LINK_ERRORS)
-    stage.plant.machine.alarms = (alarm("store_damaged", stage.clock.now(), None),)
-    stage.until(page.locator("#alarm-new:not([hidden])").count)
+    stage.plant.machine.alarms = (alarm("drive_lost", stage.clock.now()),)
+    stage.until(page.locator('#says[data-priority="2"]').count)
     page.evaluate("scrollTo(0, 1500)")
     assert box(page.locator("#alarm-strip"))["y"] == 0
-    expect(page.locator("#alarm-new")).to_be_in_viewport(ratio=0.9)
+    expect(page.locator("#says > summary")).to_be_in_viewport(ratio=0.9)
     lose(stage)
     assert box(page.locator("#link-banner"))["y"] == 0
     expect(page.locator("#link-banner")).to_be_in_viewport(ratio=0.9)

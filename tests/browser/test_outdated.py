@@ -43,8 +43,9 @@ def test_an_order_of_an_outdated_page_is_refused_and_the_page_is_loaded_again(
     page = opened("/trackers/T1", still=True, allow=("409", "WebGL"))
     page.evaluate("document.documentElement.dataset.page = '0123456789ab.fake-boot'")
     page.evaluate("sessionStorage.setItem('loaded-again-at', Date.now() + 24 * 3600 * 1000)")
-    page.locator('form[action="/trackers/T1/park"] button').click()
-    expect(page.locator('form[action="/trackers/T1/park"] .outcome')).to_contain_text("This page is outdated")
+    park = page.locator('.slots form[action="/trackers/T1/park"]')
+    park.locator("button").click()
+    expect(park.locator(".outcome")).to_contain_text("This page is outdated")
     page.clock.run_for(SHOWN_MS)
     expect(page.locator("html")).not_to_have_attribute("data-page", "0123456789ab.fake-boot")
     assert plant.orders("park") == []

@@ -84,12 +84,12 @@ def test_a_notice_that_goes_does_not_move_the_key(stage: Stage) -> None:
 
 def test_reasons_that_come_above_the_keys_do_not_move_them(site: SiteStage) -> None:
     page = site.open(PROOFS, "tablet")
-    reasons, activity = page.locator('[data-reasons="test_stop"] li'), page.locator(".strip-activity")
+    reasons, activity = page.locator('[data-reasons="test_stop"] li'), page.locator(".says-state")
     held_still(
         site,
         page,
         lambda: "Jogging" in activity.inner_text() and reasons.count() > 0,
-        lambda: "Holding" in activity.inner_text(),
+        lambda: "Jogging" not in activity.inner_text(),
     )
 
 

@@ -79,7 +79,7 @@ def troubles(at: datetime) -> dict[str, Any]:
         "waiting": (ZERO, CLOCK),
         "notices": (AREA, LOCAL),
         "local": True,
-        "not_stowed": REFUSED,
+        "not_stowed": replace(REFUSED, code="not_stowed"),
         "protection": ProtectionState(Protection.WIND_STOW, since, at + timedelta(minutes=9), REFUSED),
         "stow": StowName.WIND,
         "warning": WarningState(4.0, AREA),

@@ -7,6 +7,7 @@ from datetime import datetime
 import httpx
 import pytest
 
+from app.base.message import N_
 from app.tracker.memory.memory import Pointing, RejectedSetting, TrackerState
 from app.tracker.settings.config import MountConfig, MountKind, TrackerConfig
 from app.tracker.settings.mechanics import (
@@ -18,6 +19,7 @@ from app.tracker.settings.mechanics import (
     Region,
 )
 from app.tracker.state.snapshot import Snapshot
+from app.tracker.values.reason import Reason
 from app.web.charts.region_picture import region_picture
 from app.web.features.setup.machine_forms import texts
 from tests.fake_tracker import FakeTracker
@@ -124,7 +126,8 @@ class RejectedTracker(FakeTracker):
 
     def snapshot(self, at: datetime, tick: int) -> Snapshot:
         told = RejectedSetting("in position deg", "wide", "0.05", "It should be a number.")
-        return replace(super().snapshot(at, tick), rejected=(told,))
+        notice = Reason("config_rejected", N_("Stored settings were rejected."), N_("Correct them."))
+        return replace(super().snapshot(at, tick), rejected=(told,), notices=(notice,))
 
 
 @pytest.mark.fault(52)
@@ -139,7 +142,7 @@ async def test_rejected_settings_are_shown_beside_those_that_are_used(
     page = (await client.get(f"{ROOT}/settings")).text
     assert "<td>In position deg</td><td>wide</td><td><b>0.05</b> <small>usual value</small></td>" in page
     assert "<td>It should be a number.</td>" in page
-    assert 'data-when="rejected">' in (await client.get(ROOT)).text, "the band is on every page"
+    assert 'data-code="config_rejected" data-priority="2"' in (await client.get(ROOT)).text
 
 
 async def test_a_single_axis_keeps_its_regions_and_draws_none(

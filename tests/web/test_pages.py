@@ -195,14 +195,26 @@ def test_values_read_the_same_everywhere() -> None:
     assert [compass(angle) for angle in (0, 191, 359)] == ["N", "S", "N"]
 
 
-@pytest.mark.parametrize("page", [T1, f"{T1}/commissioning/run"])
+async def test_live_ends_tracking_where_it_is_on_and_starts_it_where_it_is_not(
+    client: httpx.AsyncClient, machine: FakeMachine
+) -> None:
+    tracker = machine.trackers["T1"]
+    for is_on in (True, False):
+        tracker.memory = replace(tracker.memory, tracking_on=is_on)
+        machine.emit()
+        text = (await client.get(T1)).text
+        assert ('action="/trackers/T1/stop" hx-post="/trackers/T1/stop"' in text) is True
+        assert ('data-when="tracking_on=true" hidden' in text) is not is_on
+        assert ('data-when="tracking_on=false" hidden' in text) is is_on
+
+
 async def test_a_tracker_that_tracks_says_so_instead_of_offering_it(
-    page: str, client: httpx.AsyncClient, machine: FakeMachine
+    client: httpx.AsyncClient, machine: FakeMachine
 ) -> None:
     for activity in (ActivityName.TRACKING, ActivityName.HOLDING):
         machine.trackers["T1"].activity = activity
         machine.emit()
-        text = (await client.get(page)).text
+        text = (await client.get(f"{T1}/commissioning/run")).text
         offered = activity is not ActivityName.TRACKING
         assert ('data-when="activity=tracking" hidden' in text) is offered
         assert ('data-when="activity!=tracking" hidden' in text) is not offered

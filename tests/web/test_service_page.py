@@ -68,12 +68,12 @@ async def test_the_switch_at_the_cabinet_is_told_on_every_page(desk: Desk) -> No
     await desk.forward(1.0)
     for path in ("/trackers/T1", "/trackers/T1/settings", PAGE):
         page = (await desk.ask("GET", path)).text
-        banner = page.split('data-when="local=true"')[1]
-        assert banner.startswith(">"), f"the banner is hidden on {path}"
-        assert "Local: Heliopanel cannot move the tracker." in banner
+        bar = page.split('id="says" data-code="local"')[1].split("</summary>")[0]
+        assert "The switch at the cabinet is on local." in bar, path
     for path in ("/", "/site", "/alarms"):
         page = (await desk.ask("GET", path)).text
-        assert 'Local: Heliopanel cannot move <span id="local-names">T1</span>' in page
+        bar = page.split('id="says" data-code="local"')[1].split("</a>")[0]
+        assert "T1 Tracker 1: Local: Heliopanel cannot move the tracker." in bar, path
 
 
 async def test_the_zero_says_who_granted_it_and_why_it_was_lost(desk: Desk) -> None:

@@ -10,7 +10,7 @@ from dataclasses import replace
 from datetime import datetime, timedelta
 from typing import Any
 
-from app.alarms.urgency import messages_of, newest, site_messages
+from app.alarms.urgency import newest, site_messages, with_messages
 from app.base.clock import set_or_at
 from app.base.logs import get_logger
 from app.link.messages import Order, StopAll
@@ -146,7 +146,8 @@ class Publisher:
         site = self._site(at)
         happened += self._alarms.judge(site, changed, at_once=bool(happened))
         self._remember(happened)
-        changed = tuple(map(self._with_messages, changed))
+        changed = tuple(map(self.told, changed))
+        self._trackers |= {one.tracker_id: one for one in changed}
         alarms, counts = self._alarms.shown(at)
         trackers = tuple(filter(None, self._trackers.values()))
         site = replace(
@@ -175,12 +176,10 @@ class Publisher:
             if event.tracker_id is not None:
                 self._last[event.tracker_id] = newest(self._last.get(event.tracker_id), event)
 
-    def _with_messages(self, snapshot: Snapshot) -> Snapshot:
-        """Return a tracker with what to know about it, and tell it so from now on."""
+    def told(self, snapshot: Snapshot) -> Snapshot:
+        """Return a tracker with its state in a word and with what to know about it."""
         place = snapshot.tracker_id
-        messages = messages_of(snapshot, self._alarms.of(place), self._last.get(place))
-        self._trackers[place] = told = replace(snapshot, messages=messages)
-        return told
+        return with_messages(snapshot, self._alarms.of(place), self._last.get(place))
 
     def _arrived(self) -> tuple[str, ...] | None:
         """Follow the site's trackers, in their order, and return those that came; None: none came or went."""

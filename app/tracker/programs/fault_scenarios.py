@@ -174,7 +174,7 @@ LESSONS = (
     Lesson(
         "high_wind", Subject.WEATHER, (), N_("Start a storm, 20 m/s with gusts"),
         N_("A tracker in automatic is stowed after its warning; a tracker in manual reports NOT STOWED."),
-        N_("If a tracker is not stowed, press Stow against wind. End the fault and wait "
+        N_("If a tracker is not stowed, press Stow panel. End the fault and wait "
             "for ten calm minutes."),
         weather=WeatherFault.HIGH_WIND,
     ),
@@ -219,7 +219,7 @@ LESSONS = (
     Lesson(
         "not_stowed", Subject.WEATHER, (42,), N_("Start a storm with a faulted drive"),
         N_("A red band and an alarm of priority 1: NOT STOWED, the reason, and what to do."),
-        N_("End the fault, reset it, set the home position again, then press Stow against wind."),
+        N_("End the fault, reset it, set the home position again, then press Stow panel."),
         (Part("drive_fault", None, 7.0),), WeatherFault.HIGH_WIND,
     ),
 )  # fmt: skip

@@ -15,7 +15,6 @@ from app.tracker.mounts.mount import sky
 from app.tracker.report.activity_texts import activity_text
 from app.tracker.report.progress import step_progress
 from app.tracker.report.shown_reasons import countdown, notices, waiting_reasons
-from app.tracker.report.state_word import state_word
 from app.tracker.settings.config import MountKind, Orientation
 from app.tracker.state.activity import (
     NAMES,
@@ -59,7 +58,6 @@ def snapshot(state: ControllerState, at: datetime, now: datetime, *, asked: bool
         activity=NAMES[type(state.activity)],
         activity_text=activity_text(state),
         approaching=is_approaching(state),
-        state=state_word(state),
         mode=state.memory.mode or default_mode(state.config.mount),
         orientation=state.memory.orientation,
         tracking_on=state.memory.tracking_on,

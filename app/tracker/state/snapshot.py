@@ -333,7 +333,8 @@ class SiteSnapshot:
 
     `boot_id` changes when the machine restarts; `sequence` grows by one with every snapshot. `alarms` are at
     most 50, the most urgent first; `alarm_counts` tells of all. `messages` are what is most urgent at the
-    site: one of each tracker that has an alarm of priority 1 to 3, and the site's own alarms, at most 50.
+    site: one of each tracker that has an alarm of priority 1 to 3 or is on local, and the site's own alarms,
+    at most 50.
     `sun_behind_horizon` says that the sun is up, but behind the horizon that was entered.
     """
 

@@ -12,12 +12,13 @@ from app.tracker.motion.hybrid import HybridPhase
 from app.tracker.protections.words import Protection
 from app.tracker.state.snapshot import ActivityName, ShowPhase
 from app.tracker.values.mode import Mode
+from app.tracker.values.operator_message import StateWord
 from app.web.languages.catalogue import Catalogue, catalogue_of
 from app.web.languages.known import ENGLISH, in_words
 
 SCRIPTS = own_folder("static") / "js"
 SCRIPT_TEXT = re.compile(r"(?<![\w.])_\(\s*\"((?:[^\"\\\n]|\\.)*)\"")
-LIVE_WORDS = (ActivityName, HybridPhase, Mode, Protection, ShowPhase)
+LIVE_WORDS = (ActivityName, HybridPhase, Mode, Protection, ShowPhase, StateWord)
 """What a script shows as words: the same as `words` in app/web/shell/formats.py."""
 
 

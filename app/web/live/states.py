@@ -117,12 +117,12 @@ class States:
         return [tracker_id for tracker_id, _ in takewhile(lambda one: one[1] > since, newest_first)]
 
     def _text(self, tracker_id: str, wanted: Wanted) -> orjson.Fragment:
-        """Return a tracker as text; what may be asked of it is for those who look at it alone."""
+        """Return a tracker as text; who looks at it alone is told what may be asked, and all messages."""
         asked = wanted.tracker_id is not None
         key, texts = (wanted.language, asked), self._texts[tracker_id]
         if key not in texts:
             tracker = self._trackers[tracker_id]
-            shown = tracker if asked or not tracker.actions else replace(tracker, actions={})
+            shown = tracker if asked else replace(tracker, actions={}, messages=tracker.messages[:1])
             texts[key] = orjson.Fragment(in_language(catalogue_of(wanted.language), shown))
         return texts[key]
 

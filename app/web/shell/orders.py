@@ -5,7 +5,7 @@ from typing import Annotated
 
 from fastapi import Depends, Form, Header
 from starlette.requests import Request
-from starlette.responses import RedirectResponse, Response
+from starlette.responses import HTMLResponse, RedirectResponse, Response
 
 from app.base.instants import read_instant
 from app.base.message import told_by
@@ -51,9 +51,14 @@ class Press:
         except ValueError as error:
             raise NotAcceptable(told_by(error)) from error
 
-    def answer(self, done: str) -> Response:
-        """Say below the key what was done, or return to the page where htmx is not at work."""
+    def answer(self, done: str = "") -> Response:
+        """Say below the key what was done, or return to the page where htmx is not at work.
+
+        Nothing is said of what the tracker's own messages tell, with who did it and when, until it is over.
+        """
         if wants_block(self.request):
+            if not done:
+                return HTMLResponse("")
             return page(self.request, Outcome(done=done, detail="", reasons=()))
         return RedirectResponse(self.back, 303)
 

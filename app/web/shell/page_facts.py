@@ -5,8 +5,11 @@ from functools import cache
 import orjson
 from markupsafe import Markup
 
-from app.tracker.state.snapshot import ActivityName, ShowPhase
+from app.alarms.catalogue import ANY_FAULT
+from app.base.message import N_
+from app.tracker.state.snapshot import ActivityName, ShowPhase, Snapshot
 from app.tracker.values.alarm_words import CALLING, QUIET, AlarmState
+from app.tracker.values.operator_message import OperatorMessage
 from app.web.charts.axis import ANGLE_STEPS_DEG, NUMBER_STEPS, TIME_STEPS_S
 from app.web.charts.drawings import HORIZON, SET_DEG
 from app.web.languages.catalogue import catalogue_of
@@ -28,11 +31,38 @@ UNDER_TEST = (
 """What a tracker does while it is moved by hand, and while a test of its drive or a home run goes on."""
 ON_ITS_WAY = (ShowPhase.RUNNING, ShowPhase.PAUSED)
 
+FAULT_LINK = ("#faults", N_("Go to reset"))
+MESSAGE_LINKS = {
+    ANY_FAULT: FAULT_LINK,
+    "local": ("/service", N_("Service")),
+    "service": ("/service", N_("Service")),
+    "area_not_clear": ("/service", N_("Service")),
+    "config_rejected": ("/settings#rejected", N_("Settings")),
+    "no_soft_limits": ("/commissioning/homing", N_("Homing")),
+    "home_lost": ("/commissioning/homing", N_("Homing")),
+    "clock_untrusted": ("/commissioning/clock", N_("Clock")),
+}
+"""Where a message about a tracker leads, below its own page, and what the button is called."""
+IN_PAGE = 2
+"""The least urgent priority that a tracker's own page tells in the page, not only in the bar."""
+
+
+def message_link(message: OperatorMessage, tracker: Snapshot) -> tuple[str, str] | None:
+    """Return where a message about a tracker leads, None where there is nothing to do on another page."""
+    is_fault = tracker.fault is not None and tracker.fault.code == message.code
+    return FAULT_LINK if is_fault else MESSAGE_LINKS.get(message.code)
+
+
+def is_in_page(message: OperatorMessage | None) -> bool:
+    """Return whether a tracker's own page tells its most urgent message in the page."""
+    return message is not None and message.priority <= IN_PAGE
+
 
 @cache
 def page_facts(code: str) -> Markup:
     """Return as JSON what the scripts of a page in a language need to know."""
-    language = catalogue_of(code).language
+    catalogue = catalogue_of(code)
+    language = catalogue.language
     told = {
         "point": language.point,
         "date": language.date,
@@ -53,6 +83,8 @@ def page_facts(code: str) -> Markup:
         "flooded": FLOODED,
         "bar": BAR,
         "looks": {name.value: one for name, one in LOOKS.items()},
+        "messages": {code: (end, catalogue.said(label)) for code, (end, label) in MESSAGE_LINKS.items()}
+        | {"in_page": IN_PAGE},
         "sky": {"radius": HORIZON, "set_deg": SET_DEG},
     }
     return Markup(orjson.dumps(told).decode().replace("<", "\\u003c"))  # noqa: S704 - our own numbers and words

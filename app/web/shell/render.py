@@ -25,7 +25,7 @@ from app.web.shell.contexts import Context
 from app.web.shell.deps import panel, principal
 from app.web.shell.help import help_for
 from app.web.shell.one_space import OneSpace
-from app.web.shell.page_facts import page_facts
+from app.web.shell.page_facts import is_in_page, message_link, page_facts
 
 
 def options_said(options: Iterable[tuple[object, str]]) -> tuple[tuple[object, str], ...]:
@@ -83,6 +83,8 @@ def environment() -> Environment:
         "script_texts": for_page,
         "page_facts": page_facts,
         "version": VERSION,
+        "message_link": message_link,
+        "is_in_page": is_in_page,
     }
     for shared in (
         "_icons.html",

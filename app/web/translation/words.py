@@ -41,6 +41,7 @@ from app.tracker.values.alarm_words import AlarmState
 from app.tracker.values.mode import Mode
 from app.tracker.values.motion import RequestKind
 from app.tracker.values.notifications import Channel
+from app.tracker.values.operator_message import StateWord
 from app.tracker.weather.simulated_weather import Scenario, WeatherFault
 from app.tracker.weather.weather import Quality, Quantity
 from app.web.features.commissioning.drive_contexts import TrainingPlace
@@ -106,6 +107,7 @@ SHOWN: tuple[type[Enum], ...] = (
     Scenario,
     WeatherFault,
     ActivityName,
+    StateWord,
     EventKind,
     ShowPhase,
     IntervalAim,

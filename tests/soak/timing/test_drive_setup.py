@@ -84,6 +84,6 @@ def measure(page: Page, hands: Hands) -> None:
     hands.press(page.get_by_role("button", name="Elevation, jog speed"))
     expect(state(page, "stop", 2)).to_contain_text(re.compile(r"was at standstill 0\.\d\d s"))
     hands.press(page.get_by_role("button", name="Test with elevation"))
-    expect(page.locator(".strip-activity")).to_contain_text("Communication-loss test")
+    expect(page.locator(".says-text")).to_contain_text("Communication-loss test")
     expect(state(page, "link-loss")).to_contain_text(re.compile(r"slowed down after 0\.[4-7]\d s"))
     expect(state(page, "link-loss")).to_have_attribute("data-status", "done")

@@ -23,7 +23,7 @@ STALE_WITHIN_S = 2.0
 TOO_OLD_S = 2.5
 """An order that is older than 2 s is refused."""
 JOG_KEY = '[data-jog="azimuth"][data-direction="1"]'
-STRIP = "document.querySelector('.strip-activity').textContent"
+STRIP = "document.querySelector('.says-state').textContent"
 WATCH_LINK = """
 window.links = [];
 new MutationObserver(() => links.push([
@@ -65,7 +65,7 @@ def test_stop_from_any_of_eight_tabs(
         assert took_s <= RAMP_S + STOP_WITHIN_S
     for tab in tabs:
         tab.until(
-            f"document.documentElement.dataset.link === 'live' && {STRIP}.includes('Holding')",
+            f"document.documentElement.dataset.link === 'live' && {STRIP}.includes('At standstill')",
             "every tab shows it",
         )
 

@@ -116,7 +116,7 @@ async def stop_test(
 ) -> Response:
     """Start the stop test."""
     await press.send(RunStopTest(axis, speed), tracker_id)
-    return press.answer(N_("The stop test is running."))
+    return press.answer()
 
 
 @router.post("/link-loss")
@@ -124,7 +124,7 @@ async def stop_test(
 async def link_loss_test(tracker_id: str, press: PressDep, axis: AxisField) -> Response:
     """Start the link-loss test."""
     await press.send(RunCommunicationLossTest(axis), tracker_id)
-    return press.answer(N_("The communication-loss test is running."))
+    return press.answer()
 
 
 async def _answer(

@@ -65,7 +65,7 @@ async def zero(
     if doubts and confirmed != "yes":
         return page(press.request, _page(press.request, tracker, doubts), block="question", status=422)
     await press.send(SetHome(), tracker_id)
-    return press.answer(N_("The command to set home was sent to the drive."))
+    return press.answer()
 
 
 @router.post("/zero/undo")
@@ -73,7 +73,7 @@ async def zero(
 async def undo_home(tracker_id: str, press: PressDep) -> Response:
     """Bring back the home position as it was before it was set last."""
     await press.send(UndoHome(), tracker_id)
-    return press.answer(N_("The previous home position is restored."))
+    return press.answer()
 
 
 @router.post("/home")
@@ -81,7 +81,7 @@ async def undo_home(tracker_id: str, press: PressDep) -> Response:
 async def home(tracker_id: str, press: PressDep) -> Response:
     """Start the automatic search for the origin switches."""
     await press.send(Home(), tracker_id)
-    return press.answer(N_("The drive is searching for its home switches."))
+    return press.answer()
 
 
 @router.post("/step")

@@ -70,7 +70,7 @@ async def rename_site(press: PressDep, name: Annotated[str, Form(max_length=LONG
 async def stop_all(press: PressDep) -> Response:
     """Stop every tracker now."""
     await press.send(StopAll())
-    return press.answer(N_("Stopped."))
+    return press.answer()
 
 
 def _faults(tracker_id: str, name: str, detail: SiteDetail) -> dict[str, Message]:

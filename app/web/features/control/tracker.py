@@ -53,7 +53,7 @@ async def show(request: Request, tracker_id: str, machine: MachineDep) -> Respon
 async def stop(tracker_id: str, press: PressDep) -> Response:
     """Stop both axes now."""
     await press.send(Stop(), tracker_id)
-    return press.answer(N_("Stopped."))
+    return press.answer()
 
 
 @router.post("/track")
@@ -61,7 +61,7 @@ async def stop(tracker_id: str, press: PressDep) -> Response:
 async def track(tracker_id: str, press: PressDep) -> Response:
     """Follow the selected mode from now on."""
     await press.send(Track(), tracker_id)
-    return press.answer(N_("Tracking is on."))
+    return press.answer()
 
 
 @router.post("/park")
@@ -69,7 +69,7 @@ async def track(tracker_id: str, press: PressDep) -> Response:
 async def park(tracker_id: str, press: PressDep) -> Response:
     """Go to the park position."""
     await press.send(Park(), tracker_id)
-    return press.answer(N_("The panel is moving to its park position."))
+    return press.answer()
 
 
 @router.post("/reset-fault")
@@ -77,7 +77,7 @@ async def park(tracker_id: str, press: PressDep) -> Response:
 async def reset_fault(tracker_id: str, press: PressDep) -> Response:
     """Clear the fault after its cause is removed."""
     await press.send(ResetFault(), tracker_id)
-    return press.answer(N_("The fault reset was sent to the drive."))
+    return press.answer()
 
 
 @router.post("/move")
@@ -93,7 +93,7 @@ async def move(
         detail = await machine.detail()
         return _answer(press.request, detail, tracker_of(detail, tracker_id), found, status=422)
     await press.send(Move(Orientation(azimuth_deg, elevation_deg)), tracker_id)
-    return press.answer(N_("The panel is moving to the target."))
+    return press.answer()
 
 
 def _answer(

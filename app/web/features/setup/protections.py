@@ -57,7 +57,7 @@ async def stow(tracker_id: str, press: PressDep, position: Annotated[str, Form(m
     if position not in list(StowName):
         raise NotAcceptable(N_("Choose one of the stow positions."))
     await press.send(Stow(StowName(position)), tracker_id)
-    return press.answer(N_("The panel goes to the stow position and stays there until you resume."))
+    return press.answer()
 
 
 @router.post("/resume")
@@ -65,7 +65,7 @@ async def stow(tracker_id: str, press: PressDep, position: Annotated[str, Form(m
 async def resume(tracker_id: str, press: PressDep) -> Response:
     """Leave the stow position that was commanded."""
     await press.send(Resume(), tracker_id)
-    return press.answer(N_("The stow has ended."))
+    return press.answer()
 
 
 @router.post("/lock")
@@ -78,7 +78,7 @@ async def lock(
 ) -> Response:
     """Forbid every automatic motion."""
     await press.send(SetInhibit(name, reason), tracker_id)
-    return press.answer(N_("Maintenance inhibit is set: no automatic motion, whatever the weather."))
+    return press.answer()
 
 
 @router.post("/release-lock")
@@ -86,7 +86,7 @@ async def lock(
 async def release_inhibit(tracker_id: str, press: PressDep) -> Response:
     """Forget the lock."""
     await press.send(ReleaseInhibit(), tracker_id)
-    return press.answer(N_("The maintenance inhibit is released; nothing moves until commanded."))
+    return press.answer()
 
 
 def _answer(request: Request, tracker: TrackerDetail, typed: Typed, *, status: int = 200) -> Response:

@@ -46,7 +46,7 @@ async def begin(
 ) -> Response:
     """Begin service mode in somebody's name."""
     await press.send(BeginServiceMode(name), tracker_id)
-    return press.answer(N_("Service mode is on. The tracker moves only after you press Confirm area clear."))
+    return press.answer()
 
 
 @router.post("/clear")
@@ -58,7 +58,7 @@ async def clear(
     if looked != "yes":
         raise NotAcceptable(LOOK_FIRST)
     await press.send(ConfirmAreaClear(), tracker_id)
-    return press.answer(N_("Area confirmed clear. The confirmation is valid for the time shown."))
+    return press.answer()
 
 
 @router.post("/end")
@@ -66,4 +66,4 @@ async def clear(
 async def end(tracker_id: str, press: PressDep) -> Response:
     """Leave service mode."""
     await press.send(EndServiceMode(), tracker_id)
-    return press.answer(N_("Service mode has ended; this starts no motion."))
+    return press.answer()

@@ -87,7 +87,7 @@ async def run(tracker_id: str, press: PressDep, built: PanelDep) -> Response:
     if seen is None or seen.show is None:
         raise CommandRejected(NO_SHOW)
     await press.send(RunShow(_stored(built, tracker_id, seen.show.show_id)), tracker_id)
-    return press.answer(N_("The show is running."))
+    return press.answer()
 
 
 @router.post("/show/pause")
@@ -95,7 +95,7 @@ async def run(tracker_id: str, press: PressDep, built: PanelDep) -> Response:
 async def pause(tracker_id: str, press: PressDep) -> Response:
     """Hold the show where it is."""
     await press.send(PauseShow(), tracker_id)
-    return press.answer(N_("The show is paused."))
+    return press.answer()
 
 
 @router.post("/show/resume")
@@ -103,7 +103,7 @@ async def pause(tracker_id: str, press: PressDep) -> Response:
 async def resume(tracker_id: str, press: PressDep) -> Response:
     """Go on with a paused show."""
     await press.send(ResumeShow(), tracker_id)
-    return press.answer(N_("The show continues."))
+    return press.answer()
 
 
 @router.post("/show/stop")
@@ -111,7 +111,7 @@ async def resume(tracker_id: str, press: PressDep) -> Response:
 async def stop(tracker_id: str, press: PressDep) -> Response:
     """End the show before its time."""
     await press.send(StopShow(), tracker_id)
-    return press.answer(N_("The show has ended; the panel holds its position."))
+    return press.answer()
 
 
 def _stored(built: Panel, tracker_id: str, show_id: str) -> ShowPlan:

@@ -1,0 +1,113 @@
+// What the controller tells first: the state in the bar with the most urgent message, all messages of the tracker behind
+// it, and the card of its own page. The order and the words are the controller's; templates/_message.html says the same.
+
+import { facts } from "./facts.js";
+import { clockTime, duration, shown } from "./format.js";
+import { live } from "./live.js";
+
+const says = document.getElementById("says");
+const list = document.querySelector(".says-messages");
+const card = document.getElementById("urgent");
+let known = "";
+
+function setText(element, text) {
+  if (element && element.textContent !== text) element.textContent = text;
+}
+
+// A motion that is announced says in how many seconds it begins.
+function leftOf(message, tracker) {
+  const warning = tracker.warning;
+  return warning && message?.code === warning.reason.code ? duration(Math.ceil(warning.remaining_s)) : "";
+}
+
+// What the state in the bar says already is not said again below it.
+function headOf(message, tracker) {
+  if (!message) return "";
+  const where = message.where ? `${message.tracker_id} ${message.where}: ` : "";
+  const of = [message.by && shown(message.by, "who"), message.since && clockTime(message.since, live.zone)].filter(Boolean);
+  return `${where}${message.code === tracker?.state ? message.message : message.title}${of.length ? ` · ${of.join(", ")}` : ""}`;
+}
+
+function linkOf({ code }, tracker) {
+  if (tracker.fault?.code === code) return facts.messages.fault;
+  return facts.messages[code] ?? null;
+}
+
+function fill(item, message, tracker) {
+  item.dataset.code = message.code;
+  item.dataset.priority = message.priority;
+  for (const shape of item.querySelectorAll("[data-shape]")) shape.hidden = Number(shape.dataset.shape) !== message.priority;
+  setText(item.querySelector(".message-title"), headOf(message));
+  setText(item.querySelector(".message-text"), message.message);
+  setText(item.querySelector(".message-hint"), message.hint);
+  const link = item.querySelector("a");
+  const leads = linkOf(message, tracker);
+  link.hidden = !leads;
+  if (leads) {
+    link.href = `/trackers/${encodeURIComponent(tracker.tracker_id)}${leads[0]}`;
+    setText(link, leads[1]);
+  }
+  const form = item.querySelector("form");
+  if (!form) return;
+  form.hidden = !message.calls;
+  form.elements.alarm_id.value = message.alarm_id;
+}
+
+// Items are kept by what they tell, so that a button under a finger is not another one at once.
+function paintList(tracker) {
+  const codes = tracker.messages.map(({ code }) => code).join();
+  if (codes !== known) {
+    known = codes;
+    const before = new Map([...list.children].map((item) => [item.dataset.code, item]));
+    list.replaceChildren(...tracker.messages.map(({ code }) => before.get(code) ?? made()));
+  }
+  tracker.messages.forEach((message, place) => fill(list.children[place], message, tracker));
+}
+
+function made() {
+  const item = document.getElementById("message-item").content.firstElementChild.cloneNode(true);
+  window.htmx?.process(item);
+  return item;
+}
+
+function paintSays(first, tracker) {
+  says.dataset.code = first?.code ?? "";
+  says.dataset.priority = first?.priority ?? "";
+  setText(says.querySelector(".says-first"), headOf(first, tracker));
+  if (tracker) setText(says.querySelector(".says-left"), leftOf(first, tracker));
+}
+
+function paint({ site, tracker }) {
+  if (live.trackerId && !tracker) return;
+  const [first] = tracker ? tracker.messages : site.messages;
+  paintSays(first, tracker);
+  if (tracker) {
+    paintList(tracker);
+    paintCard(first, tracker);
+    endAnswers(tracker);
+    return;
+  }
+  says.querySelector("a").href = first?.tracker_id ? `/trackers/${encodeURIComponent(first.tracker_id)}` : "/alarms";
+}
+
+// What a button answered is no longer the last thing that happened once something else has.
+let happened = null;
+function endAnswers(tracker) {
+  const now = JSON.stringify([tracker.state, tracker.messages.filter(({ since }) => since).map(({ code, since }) => [code, since])]);
+  if (happened !== null && happened !== now) {
+    for (const done of document.querySelectorAll("form[data-moves] .outcome-ok")) done.remove();
+  }
+  happened = now;
+}
+
+function paintCard(first, tracker) {
+  if (!card) return;
+  card.hidden = !(first && first.priority <= facts.messages.in_page);
+  if (!card.hidden) fill(card, first, tracker);
+}
+
+export function start() {
+  if (!says) return;
+  live.on("state", paint);
+  if (list) known = [...list.children].map((item) => item.dataset.code).join();
+}

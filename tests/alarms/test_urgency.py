@@ -1,0 +1,122 @@
+"""One place decides what is most urgent: the state in a word, the messages in their order, the site."""
+
+from dataclasses import replace
+from datetime import timedelta
+
+import pytest
+
+from app.alarms.alarm import Alarm, Shelf
+from app.alarms.catalogue import CATALOGUE
+from app.alarms.urgency import by_urgency, messages_of, newest, site_messages, state_of, with_messages
+from app.base.message import N_
+from app.tracker.state.snapshot import Event, EventKind, Pair, Snapshot
+from app.tracker.values.actors import CONTROLLER
+from app.tracker.values.operator_message import INFORMATION, StateWord
+from app.tracker.values.reason import Reason
+from tests.every_state import AT, CASES, FAULT, NOT_STOWED, OPERATOR, SILENT, Case, StagedTracker
+from tests.fake_alarms import alarm
+from tests.fake_data import commissioned
+
+
+def tracker(case: Case | None = None, tracker_id: str = "T1", **fields: object) -> Snapshot:
+    staged = StagedTracker(commissioned(tracker_id, "North field", tracking=False), Pair(180.0, 45.0))
+    staged.case = case or CASES["at standstill"]
+    return replace(staged.snapshot(AT, 1), **fields)  # type: ignore[arg-type]
+
+
+def event(kind: EventKind, actor: str = "ada", at_s: float = 0.0) -> Event:
+    return Event(AT + timedelta(seconds=at_s), kind, "T1", N_("Something happened."), actor)
+
+
+def codes(one: Snapshot, last: Event | None = None) -> list[str]:
+    return [message.code for message in messages_of(one, {}, last)]
+
+
+@pytest.mark.parametrize("name", list(CASES))
+def test_every_state_has_its_word_and_its_first_message(name: str) -> None:
+    case = CASES[name]
+    told = with_messages(tracker(case), {}, None)
+    assert told.state is case.word
+    assert next((message.code for message in told.messages), "") == case.first
+
+
+def test_every_word_is_the_state_of_some_tracker() -> None:
+    assert {case.word for case in CASES.values()} == set(StateWord)
+
+
+def test_what_has_priority_1_is_first_then_the_announced_motion_then_all_other_alarms() -> None:
+    found = codes(tracker(CASES["not stowed, faulted, silent, local"]))
+    assert found == [
+        "not_stowed", "motion_ahead", "following_error", "drive_lost", "operator_needed", "local",
+    ]  # fmt: skip
+
+
+def test_a_stop_is_told_with_who_pressed_it_before_what_is_waited_for() -> None:
+    waiting = tracker(CASES["waiting"])
+    first = messages_of(waiting, {}, event(EventKind.STOPPED, "vic"))[0]
+    assert (first.code, str(first.title), first.since) == ("stopped", "Stopped by vic", AT)
+    assert codes(waiting, event(EventKind.TRACKING_STARTED)) == ["sun_down", "tracking_started"]
+
+
+def test_what_the_controller_stopped_by_itself_is_told_as_that() -> None:
+    told = messages_of(tracker(), {}, event(EventKind.STOPPED, CONTROLLER))[0]
+    assert (str(told.title), told.by) == ("Something happened.", "")
+    assert messages_of(tracker(), {}, event(EventKind.HOME_POSITION_SET))[0].by == "ada"
+
+
+def test_the_last_thing_that_happened_ends_with_the_next() -> None:
+    stop, later = event(EventKind.STOPPED), event(EventKind.JOG_STARTED, at_s=3.0)
+    assert newest(event(EventKind.TRACKING_STARTED), stop) is stop
+    assert newest(stop, later) is later
+    assert newest(stop, event(EventKind.ALARM_RAISED, at_s=1.0)) is stop, "an alarm is told by itself"
+
+
+def test_what_a_stop_ended_does_not_hide_who_stopped_whatever_is_told_first() -> None:
+    stop, ended = event(EventKind.STOPPED), event(EventKind.TRACKING_ENDED)
+    assert newest(newest(None, stop), ended) is stop
+    assert newest(newest(None, ended), stop) is stop
+
+
+def test_a_shelved_alarm_is_not_told_and_one_that_calls_says_so() -> None:
+    faulted = tracker(CASES["fault"])
+    raised = Alarm("following_error", "T1", "A", FAULT.message, active=True, told=True, raised_at=AT)
+    told = messages_of(faulted, {raised.alarm_id: raised}, None)[0]
+    assert (told.calls, told.since, told.alarm_id) == (True, AT, "following_error@T1")
+    seen = replace(raised, acknowledged_at=AT)
+    assert not messages_of(faulted, {raised.alarm_id: seen}, None)[0].calls
+    shelved = replace(raised, shelf=Shelf(AT, "ada", "Known."))
+    assert messages_of(faulted, {raised.alarm_id: shelved}, None) == ()
+
+
+def test_an_alarm_ends_with_its_condition_though_it_lasts_a_little_longer_in_the_book() -> None:
+    poor = Alarm("link_poor", "T1", "North field", N_("5 % failed."), active=True, told=True, raised_at=AT)
+    assert [one.code for one in messages_of(tracker(), {poor.alarm_id: poor}, None)] == ["link_poor"]
+    assert messages_of(tracker(), {poor.alarm_id: replace(poor, gone_since=AT)}, None) == ()
+
+
+def test_a_site_names_the_trackers_in_trouble_and_its_own_alarms_the_most_urgent_first() -> None:
+    told = [
+        with_messages(tracker(CASES[name], f"T{number}"), {}, None)
+        for number, name in enumerate(("tracking", "fault", "waiting", "not stowed"), 1)
+    ]
+    found = site_messages(told, (alarm("disk_low", AT, None), alarm("drive_lost", AT, "T2")))
+    assert [(one.code, one.tracker_id) for one in found] == [
+        ("not_stowed", "T4"), ("following_error", "T2"), ("disk_low", None),
+    ]  # fmt: skip
+    assert [one.tracker_id for one in by_urgency(told)] == ["T4", "T2", "T3", "T1"]
+
+
+def test_sixty_trackers_in_a_storm_fit_into_one_list() -> None:
+    many = [with_messages(tracker(CASES["not stowed"], f"T{number}"), {}, None) for number in range(60)]
+    assert len(site_messages(many, ())) == 50
+
+
+def test_a_tracker_is_told_in_the_same_words_by_every_reason_that_lasts() -> None:
+    noted = tracker(notices=(Reason("profile_unverified", N_("Not verified."), N_("Test it.")), OPERATOR))
+    told = messages_of(noted, {}, None)
+    assert [(one.code, one.priority) for one in told] == [
+        ("operator_needed", CATALOGUE["operator_needed"].priority), ("profile_unverified", INFORMATION),
+    ]  # fmt: skip
+    silent = messages_of(tracker(unreachable=SILENT, not_stowed=NOT_STOWED), {}, None)
+    assert [one.priority for one in silent] == [1, 2]
+    assert state_of(tracker(unreachable=SILENT)) is StateWord.NO_CONNECTION

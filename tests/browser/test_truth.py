@@ -1,0 +1,103 @@
+"""The bar and the page follow a tracker through its states, and tell at once what is most urgent."""
+
+from typing import Any
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from app.base.message import N_
+from app.tracker.state.snapshot import Event, EventKind, Pair
+from app.web.languages.known import in_words
+from tests.browser.conftest import Opened, Plant, now
+from tests.every_state import AT, CASES, FAULT, StagedTracker, short_walk
+from tests.fake_data import commissioned
+
+T1 = "/trackers/T1"
+IN_PAGE = ("not_stowed", "following_error", "fault", "drive_lost")
+TOLD = """() => {
+  const seen = (one) => one.checkVisibility() && one.getBoundingClientRect().top < innerHeight;
+  const [says, card] = [document.getElementById("says"), document.getElementById("urgent")];
+  return {
+    states: [...new Set([...document.querySelectorAll("[data-live=state]")].map((one) => one.textContent))],
+    bar: [says.dataset.code, says.dataset.priority, seen(says.querySelector(".says-words"))],
+    message: says.querySelector(".says-first").textContent,
+    page: card && !card.hidden && seen(card) ? card.dataset.code : "",
+    listed: [...says.querySelectorAll(".message")].map((one) => one.dataset.code),
+  };
+}"""
+"""What a page tells of the state and of what is most urgent, where it is in sight without a tap."""
+
+
+def stage(plant: Plant) -> StagedTracker:
+    tracker = StagedTracker(commissioned("T1", "North field", tracking=False), Pair(180.0, 45.0))
+    plant.machine.trackers["T1"] = tracker
+    return tracker
+
+
+def bring(plant: Plant, tracker: StagedTracker, name: str) -> None:
+    """Have a tracker in a state, and told to the page."""
+    tracker.case = CASES[name]
+    now(plant, plant.machine.emit)
+
+
+def told(page: Page, word: str) -> dict[str, Any]:
+    expect(page.locator(".says-state")).to_have_text(word)
+    found: dict[str, Any] = page.evaluate(TOLD)
+    return found
+
+
+@pytest.mark.parametrize("size", ["tablet", "phone"])
+def test_a_page_follows_a_tracker_through_its_states(size: str, plant: Plant, opened: Opened) -> None:
+    tracker = stage(plant)
+    page = opened(T1, size, allow=("WebGL",))
+    for name in short_walk():
+        bring(plant, tracker, name)
+        case = CASES[name]
+        expect(page.locator("#says")).to_have_attribute("data-code", case.first)
+        found = told(page, in_words(case.word))
+        assert found["states"] == [in_words(case.word)], name
+        assert found["bar"][0::2] == [case.first, True], name
+        assert found["page"] == (case.first if case.first in IN_PAGE else ""), name
+        assert found["listed"][:1] == [case.first][: len(found["listed"])], name
+        assert bool(found["message"]) is bool(case.first), name
+
+
+def test_a_stop_by_somebody_is_told_and_ends_what_was_told_before(plant: Plant, opened: Opened) -> None:
+    stage(plant)
+    page = opened(f"{T1}/settings", "tablet")
+    for kind, text, actor in (
+        (EventKind.TRACKING_STARTED, "Tracking started, mode dual.", "zoe"),
+        (EventKind.STOPPED, "North field was stopped.", "ada"),
+    ):
+        event = Event(AT, kind, "T1", N_(text), actor)
+        now(plant, lambda event=event: plant.machine.emit(event))  # type: ignore[misc]
+    expect(page.locator(".says-first")).to_have_text(f"Stopped by ada · {page_time(page)}")
+    assert "Tracking started" not in (page.locator("#says").text_content() or "")
+
+
+def page_time(page: Page) -> str:
+    return str(
+        page.evaluate(
+            """at => new Intl.DateTimeFormat("sv-SE", {
+      timeZone: document.documentElement.dataset.zone, hour: "2-digit", minute: "2-digit", second: "2-digit",
+    }).format(new Date(at))""",
+            AT.isoformat(),
+        )
+    )
+
+
+def test_an_action_that_is_off_says_why_when_it_is_pressed(plant: Plant, opened: Opened) -> None:
+    tracker = stage(plant)
+    tracker.refused = (FAULT,)
+    page = opened(T1, "tablet", allow=("WebGL",))
+    form = page.locator('.slots form[action="/trackers/T1/park"]')
+    why = form.locator(".reasons")
+    expect(form.locator("button")).to_be_disabled()
+    expect(why).to_be_hidden()
+    box = form.bounding_box()
+    assert box is not None
+    page.mouse.click(box["x"] + 20, box["y"] + 20)
+    expect(why).to_be_visible()
+    expect(why).to_contain_text("The elevation axis does not follow.")
+    page.mouse.click(300, 700)
+    expect(why).to_be_hidden()

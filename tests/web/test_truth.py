@@ -1,0 +1,148 @@
+"""Each page of a tracker tells its state, its most urgent message, and why a button does not work."""
+
+import re
+from datetime import timedelta
+from html import unescape
+
+import httpx
+import pytest
+
+from app.access.roles import Role
+from app.base.message import N_
+from app.tracker.state.snapshot import Event, EventKind, Pair
+from app.tracker.values.operator_message import OperatorMessage
+from app.web.languages.catalogue import catalogue_of
+from app.web.languages.known import in_words
+from app.web.shell.page_facts import IN_PAGE
+from tests.every_state import AT, CASES, OPERATOR, StagedTracker, short_walk
+from tests.fake_data import commissioned
+from tests.fakes import FakeMachine
+from tests.web.office import Office
+
+T1 = "/trackers/T1"
+PAGES = (T1, f"{T1}/commissioning/homing", f"{T1}/settings", f"{T1}/show", f"{T1}/mast")
+OTHER_PAGES = (
+    "/commissioning/location", "/commissioning/clock", "/commissioning/mode", "/commissioning/run", "/trends",
+    "/sun-path", "/sun-check", "/record", "/protections", "/service", "/drive", "/drive-tests", "/strategy",
+    "/mount", "/machine", "/fault-injection",
+)  # fmt: skip
+BAR = re.compile(
+    r'<details class="says pop" id="says" data-code="(\w*)" data-priority="(\d*)">(.*?)</summary>', re.DOTALL
+)
+STATE = re.compile(r'data-live="state" data-form="words">([^<]*)<')
+CARD = re.compile(
+    r'id="urgent" role="alert" data-code="(\w*)" data-priority="\d*"( hidden)?>(.*?)</section>', re.DOTALL
+)
+FORM = re.compile(r"<form class=\"action\".*?</form>", re.DOTALL)
+OFF = re.compile(r"<(button|fieldset)\b[^>]*\bdisabled")
+WHY = re.compile(r'<ul class="reasons"[^>]*>\s*<li>|<p class="denied-why">')
+
+
+@pytest.fixture
+def staged(machine: FakeMachine) -> StagedTracker:
+    machine.trackers["T1"] = StagedTracker(
+        commissioned("T1", "North field", tracking=False), Pair(180.0, 45.0)
+    )
+    return machine.trackers["T1"]
+
+
+def head_of(machine: FakeMachine) -> OperatorMessage | None:
+    site = machine.latest()
+    assert site is not None
+    return next(iter(site.trackers[0].messages), None)
+
+
+def check(text: str, word: str, head: OperatorMessage | None, *, live: bool, language: str = "en") -> None:
+    """Fail unless a page tells the state and the most urgent message without a tap."""
+    catalogue = catalogue_of(language)
+    bar = BAR.search(text)
+    assert bar is not None
+    words = catalogue.gettext(in_words(word))
+    assert set(map(unescape, STATE.findall(text))) == {words}, "every pill and the bar tell one state"
+    assert bar[1] == (head.code if head else "")
+    assert bar[2] == (str(head.priority) if head else "")
+    if head is not None:
+        told = head.message if head.code == word else head.title
+        assert str(catalogue.said(told)) in unescape(re.sub(r"<[^>]*>", "", bar[3])), "in the bar"
+    card = CARD.search(text)
+    assert (card is not None) is live
+    if card is not None:
+        in_page = head is not None and head.priority <= IN_PAGE
+        assert (card[2] is None) is in_page, "danger is told in the page itself"
+        assert not in_page or str(catalogue.said(head.title)) in unescape(card[3])  # type: ignore[union-attr]
+    assert '<p class="outcome-ok"' not in text, "no answer of a button contradicts the state"
+
+
+@pytest.mark.parametrize("path", PAGES)
+async def test_every_page_tells_the_state_and_what_is_most_urgent(
+    path: str, client: httpx.AsyncClient, machine: FakeMachine, staged: StagedTracker
+) -> None:
+    for name in CASES if path == T1 else short_walk():
+        staged.case = CASES[name]
+        machine.emit()
+        text = (await client.get(path)).text
+        check(text, CASES[name].word, head_of(machine), live=path == T1)
+
+
+@pytest.mark.parametrize("path", OTHER_PAGES)
+async def test_so_does_every_other_page_of_a_tracker(
+    path: str, client: httpx.AsyncClient, machine: FakeMachine, staged: StagedTracker
+) -> None:
+    for name in ("tracking", "waiting", "fault", "silent drive while it holds", "not stowed"):
+        staged.case = CASES[name]
+        machine.emit()
+        text = (await client.get(T1 + path)).text
+        check(text, CASES[name].word, head_of(machine), live=False)
+
+
+async def test_it_is_told_in_the_language_of_the_page(
+    client: httpx.AsyncClient, machine: FakeMachine, staged: StagedTracker
+) -> None:
+    client.cookies.set("language", "de")
+    for name in short_walk():
+        staged.case = CASES[name]
+        machine.emit()
+        check((await client.get(T1)).text, CASES[name].word, head_of(machine), live=True, language="de")
+
+
+async def test_who_stopped_a_tracker_is_told_on_each_of_its_pages_until_something_else_happens(
+    client: httpx.AsyncClient, machine: FakeMachine, staged: StagedTracker
+) -> None:
+    machine.emit(Event(AT, EventKind.STOPPED, "T1", N_("North field was stopped."), "ada"))
+    for path in PAGES:
+        bar = BAR.search((await client.get(path)).text)
+        assert bar is not None
+        assert "Stopped by ada" in bar[3]
+        assert re.search(r"\d\d:\d\d:\d\d", bar[3])
+    later = AT + timedelta(seconds=5)
+    machine.emit(Event(later, EventKind.TRACKING_STARTED, "T1", N_("Tracking started, mode dual."), "zoe"))
+    for path in PAGES:
+        text = (await client.get(path)).text
+        assert "Stopped by ada" not in text
+        assert "Tracking started, mode dual. · zoe, " in text
+
+
+@pytest.mark.parametrize("path", ["stop", "track", "park", "reset-fault", "stow", "resume"])
+async def test_the_answer_of_a_button_leaves_no_sentence_behind(
+    path: str, client: httpx.AsyncClient, machine: FakeMachine, staged: StagedTracker
+) -> None:
+    answer = await client.post(f"{T1}/{path}", data={"position": "wind"}, headers={"HX-Request": "true"})
+    assert (answer.status_code, answer.text) == (200, "")
+    assert len(machine.orders) == 1
+
+
+@pytest.mark.parametrize("role", [Role.VIEWER, Role.OPERATOR, Role.ENGINEER])
+async def test_every_button_that_is_off_says_why(role: Role, office: Office) -> None:
+    tracker = StagedTracker(commissioned("T1", "North field", tracking=False), Pair(180.0, 45.0))
+    office.machine.trackers["T1"] = tracker
+    tracker.refused = (OPERATOR,)
+    off = 0
+    async with office.browser(await office.session(role)) as browser:
+        for name in ("at standstill", "tracking", "not stowed"):
+            tracker.case = CASES[name]
+            office.machine.emit()
+            for path in PAGES:
+                for form in FORM.findall((await browser.get(path)).text):
+                    off += bool(OFF.search(form))
+                    assert not OFF.search(form) or WHY.search(form), (name, path, form)
+    assert off
