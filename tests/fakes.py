@@ -68,6 +68,7 @@ from app.tracker.memory.memory import (
     TrackerState,
 )
 from app.tracker.state.snapshot import (
+    ActivityName,
     ClockState,
     Event,
     EventKind,
@@ -255,6 +256,12 @@ class FakeMachine:
         """End the jogs that were not renewed in time, and tell every reader."""
         now = self.clock.now()
         return self.emit(*(event for one in self.trackers.values() for event in one.overdue(now)))
+
+    def rest(self) -> None:
+        """Have every tracker hold, and tell every reader."""
+        for tracker in self.trackers.values():
+            tracker.activity = ActivityName.HOLDING
+        self.emit()
 
     def cut(self) -> None:
         """Lose the link: readers end, orders fail."""

@@ -52,6 +52,7 @@ def test_a_clock_11_hours_off_is_amber_and_asked_about(opened: Opened, plant: Pl
 
 
 def test_a_longitude_on_the_wrong_side_is_asked_about(opened: Opened, plant: Plant) -> None:
+    plant.machine.rest()
     page = opened(PLACE, "tablet", allow=("422",))
     page.locator('input[name="longitude_side"][value="W"]').check()
     page.locator("#forward .key").click()

@@ -49,6 +49,7 @@ def test_the_weather_card_follows_what_the_station_tells(plant: Plant, opened: O
 
 
 def test_a_pasted_pair_fills_both_fields_and_is_saved_as_it_is_shown(plant: Plant, opened: Opened) -> None:
+    plant.machine.rest()
     page = opened("/trackers/T1/commissioning/location", allow=("422",))
     page.locator("input[name=latitude_side]").nth(1).check(force=True)
     pasted = page.locator("#f-longitude")

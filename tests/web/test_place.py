@@ -1,5 +1,6 @@
 """A location that is likely to be mistaken: the page shows where its sun would be now, and asks."""
 
+from dataclasses import replace
 from datetime import UTC, datetime
 
 import httpx
@@ -7,6 +8,7 @@ import pytest
 
 from app.link.messages import SetLocation
 from app.sun.position import Location
+from app.tracker.memory.memory import CommissioningLock
 from app.web.features.site.location import LocationForm
 from app.web.features.site.place import place_doubts
 from tests.fakes import FakeMachine
@@ -72,6 +74,7 @@ def test_numbers_of_the_stored_place_exchanged_and_a_device_far_away() -> None:
 async def test_exchanged_numbers_are_asked_about_with_the_sun_there_now(
     machine: FakeMachine, client: httpx.AsyncClient, fault: FaultResult
 ) -> None:
+    machine.rest()
     place = machine.site.location
     assert place is not None
     typed = form(place.longitude_deg, place.latitude_deg, device_zone=machine.site.time_zone)
@@ -107,6 +110,7 @@ async def test_a_program_confirms_what_speaks_against_its_place(
 async def test_a_place_that_is_stored_is_not_asked_about_again(
     machine: FakeMachine, client: httpx.AsyncClient
 ) -> None:
+    machine.rest()
     place = machine.site.location
     assert place is not None
     zones = {"time_zone": machine.site.time_zone, "device_zone": "Pacific/Auckland"}
@@ -116,3 +120,29 @@ async def test_a_place_that_is_stored_is_not_asked_about_again(
     same = form(place.latitude_deg, place.longitude_deg, **zones)
     assert (await client.post(PAGE, data=same)).status_code == 303
     assert len(saved(machine)) == 1
+
+
+async def test_a_location_that_cannot_be_saved_is_refused_before_it_is_asked_about(
+    machine: FakeMachine, client: httpx.AsyncClient
+) -> None:
+    place = machine.site.location
+    assert place is not None
+    typed = form(place.longitude_deg, place.latitude_deg)
+    answer = await client.post(PAGE, data=typed, headers=HTMX)
+    assert answer.status_code == 409
+    assert "T2 is tracking the sun for the present location." in answer.text
+    assert "Stop T2 first." in answer.text
+    assert "place-doubts" not in answer.text
+
+    machine.rest()
+    assert "place-doubts" in (await client.post(PAGE, data=typed, headers=HTMX)).text
+
+    kept = machine.trackers["T1"]
+    kept.memory = replace(kept.memory, settings_lock=CommissioningLock("ada", SUMMER))
+    answer = await client.post(PAGE, data=typed, headers=HTMX)
+    assert answer.status_code == 409
+    assert "The settings of North field were locked by ada" in answer.text
+    stored = form(place.latitude_deg, place.longitude_deg, altitude=str(place.altitude_m))
+    zone = stored | {"time_zone": "Pacific/Auckland"}
+    assert "place-doubts" in (await client.post(PAGE, data=zone, headers=HTMX)).text, "only the zone differs"
+    assert not saved(machine)

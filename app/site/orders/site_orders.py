@@ -25,14 +25,14 @@ from app.site.orders import tracker_orders
 from app.site.state.model import SiteModel
 from app.site.state.validation import check_name, check_time_zone
 from app.store.store import PlannedShow, Writer
+from app.tracker.access.location_change import following
 from app.tracker.commands.commands import CommandRejected
 from app.tracker.memory.memory import Confirmation, SiteState, StepName
 from app.tracker.memory.recording import RecordingInfo
-from app.tracker.state.snapshot import ActivityName, Event, EventKind
+from app.tracker.state.snapshot import Event, EventKind
 from app.tracker.values.mode import Mode
 from app.tracker.values.reason import Reason
 
-FOLLOWS_THE_SUN = {ActivityName.TRACKING, ActivityName.SHOWING}
 CLOCK_SET_WITHIN_S = 2.0
 MOST_AT_ONCE = 50
 """So many trackers are stopped before whatever else is due, a tick among it, has its turn."""
@@ -62,7 +62,8 @@ async def set_location(model: SiteModel, command: SetLocation, actor: str) -> tu
     """Set where the site is, and its time zone."""
     state = replace(model.state, time_zone=check_time_zone(command.time_zone))
     if command.location != state.location:
-        _refuse_while_following(model)
+        if reasons := following({tracker_id: loop.activity for tracker_id, loop in model.loops.items()}):
+            raise CommandRejected(*reasons)
         state = replace(state, location=command.location, location_revision=state.location_revision + 1)
     given = Confirmation(model.now(), actor, state.location_revision)
     place = command.location
@@ -89,23 +90,6 @@ async def set_horizon(model: SiteModel, command: SetHorizon, actor: str) -> tupl
     message = say("The horizon was set: {told}.", told=told)
     event = model.event(EventKind.HORIZON_SET, message, actor)
     return await _keep(model, replace(model.state, horizon=command.horizon), event)
-
-
-def _refuse_while_following(model: SiteModel) -> None:
-    reasons = tuple(
-        Reason(
-            "follows_the_sun",
-            say(
-                "{tracker_id} is tracking the sun for the present location.",
-                tracker_id=loop.config.tracker_id,
-            ),
-            say("Stop {tracker_id} first.", tracker_id=loop.config.tracker_id),
-        )
-        for loop in model.loops.values()
-        if loop.activity in FOLLOWS_THE_SUN
-    )
-    if reasons:
-        raise CommandRejected(*reasons)
 
 
 async def set_clock(model: SiteModel, command: SetClock, actor: str) -> tuple[Event, ...]:

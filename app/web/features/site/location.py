@@ -20,7 +20,7 @@ from app.sun.position import InstantRefused, Location, sun_position
 from app.tracker.memory.memory import SiteState, StepName
 from app.tracker.settings.config import TrackerConfig
 from app.tracker.values.typed_numbers import written
-from app.web.features.site.place import place_doubts, swapped, zone_at
+from app.web.features.site.place import place_doubts, refuse_before_asking, swapped, zone_at
 from app.web.http.late_routes import page_router
 from app.web.http.needs import needs
 from app.web.http.whole_forms import MAY_BE_ABSENT
@@ -96,6 +96,8 @@ async def save(
     """Save the location and go on to the clock."""
     detail = await built.machine.detail()
     found = _doubted(read(typed), detail.site, built)
+    if found.location is not None and found.is_asked:
+        refuse_before_asking(found.location, detail, built.machine.latest())
     if found.location is None or found.is_asked:
         return _answer(press.request, tracker_id, detail, found, built, block="form", status=422)
     await press.send(SetLocation(found.location, found.zone))

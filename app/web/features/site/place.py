@@ -9,7 +9,11 @@ from math import asin, cos, radians, sin, sqrt
 from app.base.message import N_, say, with_format
 from app.base.startup import late
 from app.base.zones import zone_of
+from app.link.messages import SiteDetail
 from app.sun.position import Location
+from app.tracker.access.location_change import against_another_location
+from app.tracker.commands.commands import CommandRejected
+from app.tracker.state.snapshot import SiteSnapshot
 
 SEA = "Etc/"
 PLACELESS = ("UTC", SEA)
@@ -70,6 +74,16 @@ def _side_doubts(place: Location, device_zone: str, now: datetime, before: Locat
         yield N_("These are the coordinates of the stored location with north and south swapped.")
     elif north is _Likelier.CLOCKS:
         yield N_("With north and south swapped, the location is in the time zone of this device.")
+
+
+def refuse_before_asking(location: Location, detail: SiteDetail, now: SiteSnapshot | None) -> None:
+    """Raise `CommandRejected` where the site takes no other location now: it is in vain to ask about it."""
+    if location == detail.site.location:
+        return
+    states = {tracker_id: tracker.state for tracker_id, tracker in detail.trackers.items()}
+    doing = {one.tracker_id: one.activity for one in (now.trackers if now else ())}
+    if reasons := against_another_location(states, doing):
+        raise CommandRejected(*reasons)
 
 
 class _Likelier(Enum):
