@@ -39,12 +39,23 @@ ON_ANOTHER = """() => {
   return found;
 }"""
 """Which keys of a page lie on one another, whatever is open."""
+LARGEST_ICON_PX = 96
+ICONS = """most => [...document.querySelectorAll('svg[viewBox="0 0 24 24"][aria-hidden]')].filter((e) => {
+  const { width, height } = e.getBoundingClientRect();
+  return Math.max(width, height) > most;
+}).map((e) => `icon of ${e.getBoundingClientRect().width} px in ${e.parentElement.outerHTML.slice(0, 80)}`)"""
 LAYOUT = (LOOKS / "layout.js").read_text()
 
 
 def faults(page: Page, **other: Any) -> list[str]:
     """Return what does not fit on a page, in words."""
     found: list[str] = page.evaluate(LAYOUT, LIMITS | other)
+    return found
+
+
+def large_icons(page: Page) -> list[str]:
+    """Return which icons of a page are larger than any should be, in words."""
+    found: list[str] = page.evaluate(ICONS, LARGEST_ICON_PX)
     return found
 
 
