@@ -96,5 +96,7 @@ export function start(storedBy) {
     place.setAttribute("role", "status");
     place.textContent = _("Saved.");
   }
-  place.append(list(linesOf(before, now)));
+  const lines = linesOf(before, now);
+  // What the page says to be in use now was set, though no field differs.
+  if (lines.length || !("now" in place.dataset)) place.append(list(lines));
 }

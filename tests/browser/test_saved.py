@@ -88,3 +88,36 @@ def test_a_page_says_that_what_tells_it_is_still_coming(opened: Opened, plant: P
     page.locator("#f-deadband_deg").fill("0.7")
     page.locator(SAVE).click()
     expect(page.locator(LIST)).to_have_text("Deadband: 0.5 ° → 0.7 °")
+
+
+DRIVE = f"{T1}/drive"
+
+
+@pytest.mark.parametrize("is_tested", [False, True])
+def test_another_drive_is_told_against_the_one_before(opened: Opened, *, is_tested: bool) -> None:
+    page = opened(DRIVE)
+    page.locator("#f-kind").select_option("modbus-tcp")
+    page.locator("#f-host").fill("127.0.0.1")
+    page.locator("#f-port").fill("15999")
+    page.locator("#f-unit").fill("7")
+    if is_tested:
+        page.get_by_role("button", name="Test the connection").click()
+        expect(page.locator("#drive-check[data-focus]")).to_be_attached()
+    page.get_by_role("button", name="Save the drive settings").click()
+    expect(page.locator("main .outcome-ok")).to_contain_text("network, 127.0.0.1:15999, unit 7.")
+    expect(page.locator(f"{LIST} li")).to_have_text(
+        ["Connection: Simulated, built in → Modbus TCP, by network", "Port: 5020 → 15999", "Unit: 1 → 7"]
+    )
+
+
+def test_a_clock_that_was_set_says_what_is_in_use(opened: Opened) -> None:
+    page = opened(f"{T1}/commissioning/clock")
+    said = page.locator("main .outcome-ok[role=status]")
+    expect(said).to_have_count(0)
+    page.locator('form[action$="/clock/system"] > button').click()
+    expect(said).to_contain_text("Saved. In use: the system clock, since")
+    expect(said).to_be_in_viewport()
+    page.get_by_text("Enter date and time").click()
+    page.locator("#manual-form .key-main").click()
+    expect(said).to_contain_text("Saved. In use: a manually set clock, since")
+    expect(page.get_by_text("No values were changed.")).to_have_count(0)

@@ -227,6 +227,7 @@ class ClockPage:
     zones: tuple[str, ...]
     setting: ClockSetting
     doubt: str = ""
+    is_saved: bool = False
 
 
 @dataclass(frozen=True, slots=True)

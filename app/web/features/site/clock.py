@@ -45,7 +45,7 @@ class ClockForm(BaseModel):
 
 @router.get("")
 @needs(Permission.READ)
-async def show(request: Request, tracker_id: str, built: PanelDep) -> Response:
+async def show(request: Request, tracker_id: str, built: PanelDep, done: str = "") -> Response:
     """Show the controller's clock beside this device's."""
     detail = await built.machine.detail()
     now = built.site_now()
@@ -53,7 +53,7 @@ async def show(request: Request, tracker_id: str, built: PanelDep) -> Response:
     typed = Typed(
         {"date": local(now, zone, "%Y-%m-%d"), "time": local(now, zone, "%H:%M"), "time_zone": zone}
     )
-    return _answer(request, tracker_id, detail, typed)
+    return _answer(request, tracker_id, detail, typed, is_saved=done == "set")
 
 
 @router.post("/system")
@@ -66,7 +66,7 @@ async def keep_system(
     if doubt and confirmed != "yes":
         return page(press.request, ClockQuestion(doubt), status=422)
     await press.send(SetClock("system"))
-    return go(press.request, _page(tracker_id))
+    return go(press.request, _saved(tracker_id))
 
 
 @router.post("/device")
@@ -84,7 +84,7 @@ async def copy_device(tracker_id: str, press: PressDep, at: DeviceAt = "") -> Re
             N_("This device reported its time without a time zone; enter date and time manually.")
         )
     await press.send(SetClock("manual", instant))
-    return go(press.request, _page(tracker_id))
+    return go(press.request, _saved(tracker_id))
 
 
 @router.post("")
@@ -105,7 +105,7 @@ async def set_by_hand(
     if doubt and confirmed != "yes":
         return _answer(press.request, tracker_id, await machine.detail(), found, status=422, doubt=doubt)
     await press.send(SetClock("manual", instant, typed.time_zone))
-    return go(press.request, _page(tracker_id))
+    return go(press.request, _saved(tracker_id))
 
 
 def _told(at: str) -> datetime | None:
@@ -117,8 +117,8 @@ def _told(at: str) -> datetime | None:
     return instant if instant.tzinfo else None
 
 
-def _page(tracker_id: str) -> str:
-    return f"/trackers/{tracker_id}/commissioning/clock"
+def _saved(tracker_id: str) -> str:
+    return f"/trackers/{tracker_id}/commissioning/clock?done=set"
 
 
 def _answer(
@@ -129,9 +129,15 @@ def _answer(
     *,
     status: int = 200,
     doubt: str = "",
+    is_saved: bool = False,
 ) -> Response:
     frame = wizard_frame(request, tracker_of(detail, tracker_id), StepName.CLOCK)
     context = ClockPage(
-        frame=frame, form=typed.form(NAMES), zones=zones(), setting=detail.site.clock, doubt=doubt
+        frame=frame,
+        form=typed.form(NAMES),
+        zones=zones(),
+        setting=detail.site.clock,
+        doubt=doubt,
+        is_saved=is_saved,
     )
     return page(request, context, block="manual", status=status)
