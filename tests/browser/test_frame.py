@@ -127,3 +127,16 @@ def test_every_place_is_reached_without_javascript(plant: Plant, browser: Browse
         page.get_by_role("link", name="Journal").click()
         page.wait_for_url("**/journal")
     plain.close()
+
+
+def test_a_phone_searches_from_its_menu(opened: Opened) -> None:
+    for size, is_in_menu in (("tablet", False), ("phone", True)):
+        page = opened(HOMING, size)
+        search = page.locator(".rail-search")
+        expect(search).to_be_hidden()
+        expect(page.locator(".header-search")).to_be_visible(visible=not is_in_menu)
+    page.locator(".menu-key").click()
+    expect(search).to_be_in_viewport(ratio=1)
+    search.click()
+    page.wait_for_url("**/search")
+    expect(page.locator("input[type=search], input[name=q]").first).to_be_in_viewport()
