@@ -53,7 +53,7 @@ from app.tracker.state.activity import (
 )
 from app.tracker.state.announce import call_off, is_announced
 from app.tracker.state.controller_state import HALTED, STANDING, ControllerState, Turn
-from app.tracker.state.home_trust import lose_home
+from app.tracker.state.home_trust import give_up_search, lose_home
 from app.tracker.state.positioning import at_rest
 from app.tracker.state.setpoints import forget_correction, forget_setpoints, note_setpoint
 from app.tracker.state.snapshot import ActivityName, Event, EventKind, Snapshot
@@ -247,6 +247,7 @@ class Controller:
     def _start(self, now: datetime) -> None:
         state = self._state
         state.started_at = now
+        give_up_search(state)
         if state.memory.showing is not None:
             show_id = state.memory.showing
             state.remember(showing=None)

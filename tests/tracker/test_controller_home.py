@@ -143,6 +143,29 @@ def test_a_search_that_is_stopped_leaves_no_zero_and_the_drive_at_rest(
     fault.recovers(HOME_AGAIN)
 
 
+def test_while_the_search_runs_no_place_says_that_it_was_not_finished(blank: Plant) -> None:
+    blank.ask(Home())
+    blank.forward(1.0)
+    seen = blank.snapshot
+    reasons = [reason.message for given in seen.actions.values() for reason in given]
+    said = [seen.home_lost, seen.activity_text, *(one.message for one in seen.notices), *reasons]
+    assert blank.activity is ActivityName.HOMING
+    assert "a search for the home switches was started." in said
+    assert not [text for text in said if "not finished" in text]
+    since = seen.home_lost_at
+    blank.ask(Stop())
+    assert blank.snapshot.home_lost == "the search for the home switches was not finished."
+    assert blank.snapshot.home_lost_at == since
+
+
+def test_a_search_that_a_restart_cut_off_was_not_finished(blank: Plant) -> None:
+    blank.ask(Home())
+    blank.forward(1.0)
+    again = Plant(blank.controller.memory, at=blank.clock.now())
+    again.tick()
+    assert again.snapshot.home_lost == "the search for the home switches was not finished."
+
+
 @pytest.mark.parametrize(
     ("answer", "why"),
     [({"request_failed": True}, "did not find them"), ({}, "does not report both axes as homed")],

@@ -13,7 +13,7 @@ from app.tracker.mounts.capabilities import axis_of, axis_title
 from app.tracker.settings.axes import Axis
 from app.tracker.state.activity import HOLDING, Homing, SettingHome
 from app.tracker.state.controller_state import HALTED, ControllerState, Turn
-from app.tracker.state.home_trust import doubt_zero, lose_home, set_homed
+from app.tracker.state.home_trust import SEARCH_BEGUN, doubt_zero, lose_home, set_homed
 from app.tracker.state.positioning import at_rest
 from app.tracker.state.setpoints import forget_setpoints
 from app.tracker.state.snapshot import EventKind
@@ -55,7 +55,7 @@ def home(state: ControllerState) -> None:
     forget_setpoints(state)
     set_homed(state, frozenset())
     forget(state)
-    doubt_zero(state, N_("the search for the home switches was not finished."))
+    doubt_zero(state, SEARCH_BEGUN)
     begin(state, Homing(state.next_request(), state.now + _homing_time(state), state.actor))
     state.say(EventKind.HOMING_STARTED, N_("The drive searches for its home switches."))
 

@@ -2,12 +2,15 @@
 
 from collections.abc import Set as AbstractSet
 
-from app.base.message import Message, say
+from app.base.message import N_, Message, say
 from app.tracker.settings.axes import Axis
 from app.tracker.state.controller_state import ControllerState
 from app.tracker.state.setpoints import forget_correction
 from app.tracker.state.snapshot import EventKind
 from app.tracker.values.reason import Reason
+
+SEARCH_BEGUN = N_("a search for the home switches was started.")
+SEARCH_UNFINISHED = N_("the search for the home switches was not finished.")
 
 
 def set_homed(state: ControllerState, axes: AbstractSet[Axis]) -> None:
@@ -31,3 +34,9 @@ def lose_home(state: ControllerState, reason: Reason) -> None:
 def doubt_zero(state: ControllerState, why: Message) -> None:
     """Remember since when and why there is no zero that is trusted."""
     state.remember(home=None, home_lost=why, home_lost_at=state.site_time)
+
+
+def give_up_search(state: ControllerState) -> None:
+    """Say of a search for the home switches that has begun that it was not finished; it is over now."""
+    if state.memory.home is None and state.memory.home_lost == SEARCH_BEGUN:
+        state.remember(home_lost=SEARCH_UNFINISHED)

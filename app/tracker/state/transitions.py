@@ -25,7 +25,7 @@ from app.tracker.state.activity import (
 )
 from app.tracker.state.announce import call_off
 from app.tracker.state.controller_state import ControllerState
-from app.tracker.state.home_trust import lose_home
+from app.tracker.state.home_trust import give_up_search, lose_home
 from app.tracker.state.setpoints import forget_setpoint
 from app.tracker.state.snapshot import EventKind
 from app.tracker.state.waiting import end_waiting, wait_for
@@ -106,6 +106,7 @@ def _say_zero_ended(state: ControllerState, activity: SettingHome | Homing, why:
     if isinstance(activity, Homing):
         text = say("The search for the home switches ended: {why}", why=why)
         state.say(EventKind.HOMING_ENDED, text, outcome="failed")
+        give_up_search(state)
         return
     state.say(EventKind.HOME_POSITION_NOT_SET, say("Home position not set: {why}", why=why))
     lose_home(
