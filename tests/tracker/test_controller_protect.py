@@ -44,7 +44,7 @@ def test_a_lost_drive_ends_tracking_which_then_waits_for_the_operator(plant: Pla
     shown = plant.snapshot
     assert plant.told == DriveCommand()
     assert shown.activity is ActivityName.HOLDING
-    assert shown.activity_text.startswith("No communication with the drive")
+    assert shown.activity_text == "No connection to the drive"
     assert shown.measured is None
     assert shown.last_measured is not None
     assert shown.position_age_s == pytest.approx(0.8)
@@ -58,6 +58,25 @@ def test_a_lost_drive_ends_tracking_which_then_waits_for_the_operator(plant: Pla
     plant.ask(Track())
     plant.forward(1.0)
     assert plant.snapshot.waiting == ()
+
+
+def test_a_silent_drive_is_named_first_and_nothing_asks_to_wait_for_standstill(plant: Plant) -> None:
+    plant.ask(SOUTH)
+    plant.forward(1.0)
+    plant.cut = True
+    plant.forward(2.0)
+    plant.ask(Stop())
+    plant.forward(75.0)
+    seen = plant.snapshot
+    assert seen.activity is ActivityName.STOPPING
+    assert seen.activity_text == "No connection to the drive"
+    for action in ("jog", "step", "set_home", "home", "move", "park", "track"):
+        assert seen.actions[action][0].code == "drive_unreachable"
+    hints = [reason.hint for given in seen.actions.values() for reason in given]
+    assert not [hint for hint in hints if "standstill" in hint]
+    plant.cut = False
+    plant.forward(3.0)
+    assert plant.snapshot.activity is ActivityName.HOLDING
 
 
 def test_a_single_failed_reading_changes_nothing(plant: Plant) -> None:

@@ -135,7 +135,7 @@ class Witness:
         assert activity not in AUTOMATIC, "the wind lets nothing track and no show run"
         if activity is ActivityName.STOWING:
             assert self._plant.controller.memory.protection is not None
-            assert f"position {StowName.WIND}" in self._plant.snapshot.activity_text
+            assert "wind stow position" in self._plant.snapshot.activity_text
         if self._hand_since is not None:
             assert now - max(self.wind.begun, self._hand_since) <= HAND_GRACE
 

@@ -21,6 +21,9 @@ from app.tracker.values.motion import Feedback
 from app.tracker.values.reason import Reason
 
 UNDO_NEAR_DEG = 0.2
+UNREACHABLE = "drive_unreachable"
+_UNKNOWN_WITHOUT = ("busy_stopping", "axes_moving")
+"""Reasons that say to wait for standstill, which a drive that does not answer never reports."""
 
 
 class Action(StrEnum):
@@ -58,7 +61,16 @@ class Action(StrEnum):
 
 def unmet(state: ControllerState, action: Action) -> tuple[Reason, ...]:
     """Return every condition that forbids an action now; empty: it is allowed."""
-    return tuple(reason for condition in REQUIRED[action] if (reason := condition(state)) is not None)
+    found = tuple(reason for condition in REQUIRED[action] if (reason := condition(state)) is not None)
+    return _silence_first(found) if state.connection.lost else found
+
+
+def _silence_first(found: tuple[Reason, ...]) -> tuple[Reason, ...]:
+    """Return the reasons with the lost connection first, without those that a silent drive cannot end."""
+    silent = tuple(reason for reason in found if reason.code == UNREACHABLE)
+    if not silent:
+        return found
+    return silent + tuple(reason for reason in found if reason.code not in (UNREACHABLE, *_UNKNOWN_WITHOUT))
 
 
 def demand(state: ControllerState, action: Action, *more: Reason | None) -> None:
@@ -85,7 +97,7 @@ def reachable(state: ControllerState) -> Reason | None:
     if state.feedback is not None and not state.connection.lost:
         return None
     return Reason(
-        "drive_unreachable",
+        UNREACHABLE,
         say("The drive of {name} does not answer.", name=state.config.name),
         N_("Check the drive's power and network cable. The controller retries automatically."),
     )

@@ -10,6 +10,7 @@ from app.tracker.activities.tracking import SUN_DPS
 from app.tracker.mounts.capabilities import axis_words
 from app.tracker.mounts.mount import sky
 from app.tracker.report.progress import step_progress
+from app.tracker.settings.protections import StowName
 from app.tracker.settings.stepped import clock_text
 from app.tracker.settings.strategy import Continuous, Deadband, EncoderDeadband, Interval, Stepped
 from app.tracker.state.activity import (
@@ -40,6 +41,14 @@ _MOVING = {
     MoveKind.DIRECTION: N_("Moving for the direction test: watch which way the panel turns"),
     MoveKind.SCALE: N_("Moving for the scale test: measure how far the panel turns"),
 }
+_GOING = {
+    StowName.WIND: N_("Going to the wind stow position"),
+    StowName.SNOW: N_("Going to the snow stow position"),
+    StowName.HAIL: N_("Going to the hail stow position"),
+    StowName.CLEANING: N_("Going to the cleaning position"),
+    StowName.MAINTENANCE: N_("Going to the maintenance position"),
+    StowName.PARK: N_("Moving to the park position"),
+}
 _PLAIN: dict[type[Activity], Message] = {
     SettingHome: N_("Setting the home position"),
     Homing: N_("Searching for the home switches"),
@@ -56,7 +65,7 @@ _SHOWING = {
 def activity_text(state: ControllerState) -> Message:
     """Return what the tracker is doing, without times of day (pages know the local time)."""
     if state.connection.lost:
-        return N_("No communication with the drive; a stop command was sent")
+        return N_("No connection to the drive")
     return _doing(state, state.activity)
 
 
@@ -85,7 +94,7 @@ def _doing(state: ControllerState, activity: Activity) -> Message:
 
 def _by_order(activity: Moving | Measuring | Stowing | Stowed) -> Message:
     if isinstance(activity, Stowing):
-        return say("Going to the stow position {stow}", stow=activity.stow)
+        return _GOING[activity.stow]
     if isinstance(activity, Stowed):
         return say("Stowed: {stow}", stow=activity.stow)
     if isinstance(activity, Moving):
