@@ -158,6 +158,50 @@ def test_after_stop_the_panel_is_not_stowed_and_says_so() -> None:
     assert plant.snapshot.not_stowed is None, "it stands level already"
 
 
+def promised(plant: Plant) -> str:
+    """Return what the protection says that this tracker will do after the storm."""
+    protection = plant.snapshot.protection
+    assert protection is not None
+    return str(protection.reason.hint)
+
+
+def test_what_the_protection_promises_is_what_the_tracker_does() -> None:
+    plant = tracking()
+    plant.blow(STORM).forward(40)
+    assert promised(plant) == "Tracking continues once the wind has been calm for 1 min."
+    stopped = deepcopy(plant)
+    plant.blow(2.0).forward(CALM_S + 5.0)
+    assert doing(plant) is ActivityName.TRACKING
+
+    stopped.ask(Stop())
+    stopped.forward(1)
+    assert promised(stopped) == "Tracking stays off. Press Start tracking once the weather is calm."
+    stopped.blow(2.0).forward(CALM_S + 5.0)
+    assert doing(stopped) is ActivityName.HOLDING
+
+
+def test_a_manual_tracker_in_a_storm_reads_that_it_is_not_stowed() -> None:
+    plant = calm()
+    plant.blow(STORM).forward(5)
+    assert doing(plant) is ActivityName.HOLDING
+    assert promised(plant) == ("The panel is not stowed. Clear the area, then press Stow; or jog the panel.")
+
+
+def test_a_panel_that_was_stowed_or_parked_by_command_reads_where_it_will_be() -> None:
+    plant = calm()
+    plant.ask(Stow(StowName.CLEANING))
+    plant.forward(60)
+    plant.blow(STORM).forward(60)
+    assert promised(plant) == "The panel then stays stowed until you press Resume."
+    plant.blow(2.0).forward(CALM_S + 60.0)
+    assert plant.snapshot.stow is StowName.CLEANING
+    parked = calm()
+    parked.ask(Park())
+    parked.forward(60)
+    parked.blow(STORM).forward(60)
+    assert promised(parked) == "Afterward, the panel returns to its park position."
+
+
 @pytest.mark.fault(42)
 def test_without_a_zero_or_with_a_fault_the_panel_is_not_stowed(fault: FaultResult) -> None:
     plant = Plant().blow(STORM)

@@ -3,11 +3,12 @@
 from dataclasses import replace
 from datetime import datetime
 
-from app.base.message import N_, Word, say, with_format
+from app.base.message import N_, Message, Word, say, with_format
 from app.tracker.memory.observation import Observation
 from app.tracker.protections.guarding import HOLDS, OFF_GUARD, Guarding, latched, limits_of, step
 from app.tracker.protections.words import Protection, ProtectionState
 from app.tracker.settings.protections import Reaction, StowName
+from app.tracker.state.activity import Stowed, Stowing, Tracking
 from app.tracker.state.controller_state import ControllerState
 from app.tracker.state.snapshot import EventKind
 from app.tracker.values.reason import Reason
@@ -37,6 +38,10 @@ REACTS = {
     Reaction.HOLD: N_("the panel holds its position"),
     Reaction.STOW: N_("the panel is stowed as a precaution"),
 }
+
+_AFTER_SNOW = N_("Tracking continues automatically once the load is off.")
+_NEEDS_OPERATOR = N_("Tracking needs the operator. Press Start tracking.")
+_STAYS_OFF = N_("Tracking stays off. Press Start tracking once the weather is calm.")
 
 
 def look(state: ControllerState, seen: Observation) -> None:
@@ -121,16 +126,14 @@ def _reason(state: ControllerState) -> Reason:
                 name=name,
                 hold_s=with_format(config.snow.hold_s, "g"),
             )
-            return Reason("snow", load, N_("Tracking continues automatically once the load is off."))
+            return Reason("snow", load, _afterwards(state, _AFTER_SNOW))
         case Protection.WAIT:
             text = say(
                 "{name} holds: the irradiance is below {threshold_wm2} W/m2.",
                 name=name,
                 threshold_wm2=with_format(config.light.threshold_wm2, "g"),
             )
-            return Reason(
-                "too_dark", text, N_("Tracking continues automatically once the irradiance is sufficient.")
-            )
+            return Reason("too_dark", text, _after_dark(state))
         case _:
             text = say(
                 "{name} is in low-light hold: for {hold_s} minutes the irradiance was below "
@@ -139,9 +142,34 @@ def _reason(state: ControllerState) -> Reason:
                 hold_s=with_format(config.light.hold_s / 60.0, "g"),
                 threshold_wm2=with_format(config.light.threshold_wm2, "g"),
             )
-            return Reason(
-                "hibernation", text, N_("Tracking continues automatically once the irradiance is sufficient.")
-            )
+            return Reason("hibernation", text, _after_dark(state))
+
+
+def _afterwards(state: ControllerState, continues: Message) -> Message:
+    """Return what this tracker will do once wind or snow demand nothing any more."""
+    stow = state.memory.stow
+    if state.alarmed is not None:
+        return say("The panel is not stowed. {hint}", hint=state.alarmed.hint)
+    if stow is StowName.PARK:
+        return N_("Afterward, the panel returns to its park position.")
+    if stow is not None:
+        return N_("The panel then stays stowed until you press Resume.")
+    if _goes_on(state):
+        return continues
+    return _NEEDS_OPERATOR if state.memory.tracking_on else _STAYS_OFF
+
+
+def _after_dark(state: ControllerState) -> Message:
+    """Return what this tracker will do once there is enough light."""
+    if _goes_on(state):
+        return N_("Tracking continues automatically once the irradiance is sufficient.")
+    return _NEEDS_OPERATOR if state.memory.tracking_on else N_("No action is needed while tracking is off.")
+
+
+def _goes_on(state: ControllerState) -> bool:
+    """Return whether tracking goes on by itself once the weather allows it."""
+    tracks = isinstance(state.activity, Tracking | Stowing | Stowed)
+    return tracks and state.memory.tracking_on and state.waiting.reason is None
 
 
 def doubt_reason(state: ControllerState, quantity: Quantity) -> Reason:
@@ -208,9 +236,8 @@ def _is_night(state: ControllerState, seen: Observation) -> bool:
 def _typhoon_reason(state: ControllerState, current: Guarding) -> Reason:
     name, limits = state.config.name, state.config.protection.wind
     minutes = with_format(limits.resume_after_s / 60.0, "g")
-    hint = say(
-        "Once the wind has been calm for {minutes} minutes, tracking continues if it was on.", minutes=minutes
-    )
+    continues = say("Tracking continues once the wind has been calm for {minutes} min.", minutes=minutes)
+    hint = _afterwards(state, continues)
     wind = state.seen.weather.wind if state.seen else None
     if current.wind_doubt.ripe and limits.bad is Reaction.STOW:
         return Reason(
