@@ -140,7 +140,17 @@ function paintNoLink() {
   for (const id of ["round-trip", "lost-beats", "link-verdict"]) document.getElementById(id).textContent = "";
 }
 
-document.querySelectorAll("[data-jog]").forEach(watch);
+// A button that the user's role may not press says which role it needs, and how to get it.
+function explain(key) {
+  const why = () => {
+    said.replaceChildren(document.getElementById("no-jog-words").content.cloneNode(true));
+    said.scrollIntoView({ block: "nearest" });
+  };
+  for (const name of ["pointerdown", "focus", "keydown"]) key.addEventListener(name, why);
+}
+
+document.querySelectorAll("[data-jog]:not([data-denied])").forEach(watch);
+document.querySelectorAll("[data-jog][data-denied]").forEach(explain);
 document.addEventListener("pointerdown", (event) => { if (press && event.pointerId !== press.pointer) end(_("A second finger touched the screen.")); }, true);
 document.addEventListener("visibilitychange", () => { if (document.hidden) end(); });
 addEventListener("blur", () => end());

@@ -151,19 +151,22 @@ async def test_pages_show_a_viewer_what_a_role_may_not_do(office: Office) -> Non
     park = seen[seen.index('action="/trackers/T1/park"') :]
     assert park[: park.index("</form>")].count('<fieldset class="denied" disabled>') == 1
     assert "Only for operator or engineer." in park
+    control = seen[seen.index('action="/trackers/T1/control"') :]
+    assert control[: control.index("</form>")].count('<fieldset class="denied" disabled>') == 1
     stop = seen[seen.index('id="stop-form"') :]
     assert "disabled" not in stop[: stop.index("</form>")]
 
 
 async def test_who_may_not_move_a_tracker_reads_which_role_may_and_who_gives_it(office: Office) -> None:
-    said = {}
-    for role in (Role.ADMINISTRATOR, Role.VIEWER, Role.OPERATOR):
-        async with office.browser(await office.session(role)) as browser:
-            said[role] = (await browser.get("/trackers/T1/commissioning/homing")).text
-    why = "Your role cannot move the tracker. An administrator can add the role operator or engineer"
-    assert why in said[Role.ADMINISTRATOR]
-    assert why in said[Role.VIEWER]
-    assert why not in said[Role.OPERATOR]
-    assert '<a href="/users">' in said[Role.ADMINISTRATOR].split(why)[1].split("</p>")[0]
-    assert '<a href="/users">' not in said[Role.VIEWER].split(why)[1].split("</p>")[0]
-    assert [said[role].count("data-jog=") for role in said] == [0, 0, 4]
+    for path in ("/trackers/T1/commissioning/homing", "/trackers/T1/mast"):
+        said = {}
+        for role in (Role.ADMINISTRATOR, Role.VIEWER, Role.OPERATOR):
+            async with office.browser(await office.session(role)) as browser:
+                said[role] = (await browser.get(path)).text
+        assert [said[role].count("data-jog=") for role in said] == [4, 4, 4]
+        assert [said[role].count("data-denied") for role in said] == [4, 4, 0]
+        assert ['data-action="jog"' in said[role] for role in said] == [False, False, True]
+        assert ["Jogging needs the role operator." in said[role] for role in said] == [True, True, False]
+        words = {role: said[role].split('id="no-jog-words">')[-1].split("</template>")[0] for role in said}
+        assert 'href="/users"' in words[Role.ADMINISTRATOR]
+        assert 'href="/users"' not in words[Role.VIEWER]
