@@ -11,10 +11,12 @@ from app.tracker.state.snapshot import ActivityName, EventKind
 from tests.browser.hands import LINK_MEASURED, middle
 from tests.browser.page_clock import BEAT_MS
 from tests.browser.site_stage import SiteStage, staged_site
+from tests.browser.test_jog_stays import BOXES
 
 HOMING = "/trackers/T1/commissioning/homing"
 KEY = '[data-jog="azimuth"][data-direction="1"]'
 PASSWORD = "violet-anvil-harbour-9"  # noqa: S105 - of people who do not exist
+NEEDS_OPERATOR = "Jogging needs the role operator. An administrator can add it under Users."
 COUNTDOWN_MS = 10_000
 HELD_MS = 200
 LATE = """() => {
@@ -33,10 +35,10 @@ def session(stage: SiteStage, name: str, *roles: Role) -> str:
     return str(stage.ask(keeper.log_in(name, PASSWORD, "127.0.0.1", "test")))
 
 
-def opened(stage: SiteStage, session: str) -> Page:
+def opened(stage: SiteStage, session: str, path: str = HOMING) -> Page:
     visitor, port = stage.visitor(), stage.plant.url.rpartition(":")[2]
     visitor.add_cookies([{"name": f"heliopanel-{port}", "value": session, "url": stage.plant.url}])
-    return stage.visit(visitor, HOMING)
+    return stage.visit(visitor, path)
 
 
 def hold(stage: SiteStage, page: Page) -> None:
@@ -103,3 +105,27 @@ def test_nothing_that_the_loser_sent_is_carried_out(
         bo.mouse.up()
         control(stage, ada, "held")
         picture(ada, "control-held")
+
+
+@pytest.mark.parametrize("path", [HOMING, "/trackers/T1/mast"])
+def test_who_may_not_jog_finds_the_buttons_in_their_place_and_reads_why(browser: Browser, path: str) -> None:
+    with staged_site(browser) as stage:
+        session(stage, "root", Role.ADMINISTRATOR)
+        pages = {}
+        for role in (Role.OPERATOR, Role.ADMINISTRATOR, Role.VIEWER):
+            pages[role] = opened(stage, session(stage, f"a-{role.value}", role), path)
+        places = {role: page.evaluate(BOXES) for role, page in pages.items()}
+        for role in (Role.ADMINISTRATOR, Role.VIEWER):
+            page, key = pages[role], pages[role].locator(KEY)
+            assert places[role] == places[Role.OPERATOR]
+            assert key.evaluate("e => getComputedStyle(e).borderStyle") == "dashed"
+            assert key.get_attribute("aria-disabled") == "true"
+            for act in (key.focus, lambda key=key: key.click(force=True)):
+                page.evaluate("document.getElementById('jog-words').textContent = ''")
+                act()
+                assert page.locator("#jog-words").inner_text() == NEEDS_OPERATOR
+                page.evaluate("document.activeElement.blur()")
+            stage.advance(500)
+            assert page.evaluate(BOXES) == places[role]
+            assert page.locator("#jog-words a").count() == (1 if role is Role.ADMINISTRATOR else 0)
+        assert stage.plant.orders("jog") == []
