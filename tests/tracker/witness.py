@@ -19,7 +19,6 @@ from app.tracker.commands.commands import (
     Stop,
 )
 from app.tracker.settings.axes import Axis
-from app.tracker.settings.protections import StowName
 from app.tracker.state.snapshot import ActivityName
 from app.tracker.values.motion import AxisCommand, Halt, Position, Velocity
 from tests.tracker.plant import Plant
