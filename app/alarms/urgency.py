@@ -206,7 +206,7 @@ def _name(actor: str) -> str | Message | Word:
 
 def site_messages(trackers: Iterable[Snapshot], alarms: Iterable[AlarmNow]) -> tuple[OperatorMessage, ...]:
     """Return what is most urgent at a site, at most 50: one message a tracker, and the site's own alarms."""
-    found = [_at(tracker) for tracker in trackers if _is_urgent(tracker)]
+    found = [_at(tracker) for tracker in by_urgency(filter(_is_urgent, trackers))]
     found += (_of_site(alarm) for alarm in alarms if alarm.tracker_id is None and alarm.state in ACTIVE)
     return tuple(sorted(found, key=attrgetter("priority"))[:MOST_SHOWN])
 

@@ -18,6 +18,9 @@ function stayAway(event) {
   if (ctx.hx?.redirect && hasLeft(ctx)) delete ctx.hx.redirect;
 }
 
+// On a page of the whole site an order may be about one of its trackers.
+const aboutWhich = (form) => live.tracker ?? live.trackerOf(form?.closest("[data-tracker]")?.dataset.tracker);
+
 function prepare(event) {
   const { ctx } = event.detail;
   ctx.askedAt = performance.now();
@@ -32,7 +35,7 @@ function prepare(event) {
   const body = ctx.request.body;
   if (body?.has?.("issued_at")) body.set("issued_at", live.machineNow() ?? "");
   if (body?.has?.("key")) body.set("key", randomId());
-  if (body?.has?.("epoch")) body.set("epoch", live.tracker?.control?.epoch ?? "");
+  if (body?.has?.("epoch")) body.set("epoch", aboutWhich(form)?.control?.epoch ?? "");
 }
 
 // After a swap that reports wrong input, the summary of errors has the focus.

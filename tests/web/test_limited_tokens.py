@@ -8,6 +8,7 @@ import pytest
 from app.access.tokens import Scope
 from app.base.permission import Permission
 from app.tracker.commands.commands import Stop
+from tests.fake_alarms import alarm
 from tests.web.asgi import streaming
 from tests.web.office import Office
 from tests.web.route_table import ROUTES
@@ -53,6 +54,16 @@ def words(answer: httpx.Response) -> str:
     """Return what an answer says of this site; T1 as an example is no word of it."""
     is_example = answer.request.url.path.startswith(EXAMPLES)
     return "" if is_example else answer.text.replace('value="T1"', "")
+
+
+async def test_the_most_urgent_of_another_tracker_is_not_told(office: Office) -> None:
+    headers = await bearer(office, Scope.READ)
+    office.machine.alarms = tuple(alarm("not_stowed", office.clock.now(), name) for name in ("T1", "T2"))
+    office.machine.emit()
+    async with office.browser() as browser:
+        page = words(await browser.get("/", headers=headers))
+    assert "T2 South field: Not stowed" in page
+    assert not OTHER.search(page)
 
 
 @pytest.mark.parametrize("path", ["/api/v1/trackers/T1/stop", "/api/v1/trackers/T2/stop", "/api/v1/stop"])

@@ -180,7 +180,7 @@ async def test_few_trackers_stand_as_cards_and_a_field_as_tiles(
     assert "glances-cards" in (await client.get("/?layout=cards")).text
     page = (await client.get("/")).text
     assert page.count("data-tile=") == 9
-    assert hidden_of(page, 'id="tile-urgent"') == [True]
+    assert hidden_of(page, 'id="site-urgent"') == [True]
 
 
 def hidden_of(page: str, mark: str) -> list[bool]:
@@ -193,11 +193,12 @@ async def test_the_overview_counts_what_the_trackers_do_and_leads_to_what_is_urg
     machine.trackers["T2"].activity = ActivityName.STOWED
     machine.emit()
     calm = (await client.get("/")).text
-    assert re.findall(r'data-doing="(\w+)"><b>(\d+)', calm) == [("holding", "1"), ("stowed", "1")]
+    counts = re.findall(r'data-state="(\w+)" data-priority="0" aria-pressed="false">\s*<b>(\d+)', calm)
+    assert counts == [("at_standstill", "1"), ("stowed", "1")]
     assert hidden_of(calm, "data-urgent") == [True, True]
     machine.alarms = tuple(alarm(code, NOON, "T2") for code in ("drive_lost", "not_stowed"))
     machine.emit()
     page = (await client.get("/")).text
-    assert hidden_of(page, "data-urgent") == [True, False], "the key of the tracker in danger leads to it"
-    assert hidden_of(page, "data-calm") == [False, True], "and to nothing else"
-    assert '<span class="glance-trouble">Not stowed</span>' in page, "the most urgent alarm is named"
+    assert hidden_of(page, "data-urgent") == [False, True], "the key of the tracker in danger leads to it"
+    assert hidden_of(page, "data-calm") == [True, False], "and to nothing else"
+    assert "</i><span>Not stowed</span></p>" in page, "the most urgent alarm is named"

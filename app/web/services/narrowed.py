@@ -84,13 +84,15 @@ class NarrowedMachine:
 
 
 def narrowed_site(site: SiteSnapshot, trackers: frozenset[str]) -> SiteSnapshot:
-    """Return a snapshot with these trackers, and the alarms of these and of the site."""
-    alarms = tuple(one for one in site.alarms if one.tracker_id in {None, *trackers})
+    """Return a snapshot with these trackers, and the alarms and messages of these and of the site."""
+    told = {None, *trackers}
+    alarms = tuple(one for one in site.alarms if one.tracker_id in told)
     return replace(
         site,
         trackers=tuple(one for one in site.trackers if one.tracker_id in trackers),
         alarms=alarms,
         alarm_counts=counts_of(alarms, flood=site.alarm_counts.flood),
+        messages=tuple(one for one in site.messages if one.tracker_id in told),
     )
 
 

@@ -10,13 +10,14 @@ from app.tracker.memory.memory import ClockSetting, Pointing, Sighting, StepName
 from app.tracker.memory.recording import RecordingInfo
 from app.tracker.motion.limit_change import LimitReview
 from app.tracker.settings.config import MountConfig, Orientation, TrackerConfig
-from app.tracker.state.snapshot import ActivityName, SiteSnapshot, Snapshot
+from app.tracker.state.snapshot import SiteSnapshot, Snapshot
 from app.tracker.values.mode import Mode
 from app.tracker.values.motion import DriveCapabilities
+from app.tracker.values.operator_message import StateWord
 from app.tracker.values.reason import Reason
 from app.web.charts.drawings import Scene, SunDiagram
 from app.web.shell.control_role import Standing, standing
-from app.web.shell.glances import Glance
+from app.web.shell.glances import IN_DANGER, Count, Glance, Urgent
 from app.web.shell.who import Who
 
 ALGORITHMS = tuple((algorithm.value, one.expected) for algorithm, one in PUBLISHED.items())
@@ -157,16 +158,24 @@ class SettingRow:
 
 @dataclass(frozen=True, slots=True)
 class OverviewPage:
-    """All trackers of the site, as cards, in rows or as tiles, and how many do what."""
+    """All trackers of the site, as cards, in rows or as tiles, the most urgent first and above all.
+
+    `counts` tells how many are in each state; with a `state` only those are shown. `chosen_layout` is the
+    layout that the address names.
+    """
 
     template: ClassVar[str] = "overview.html"
 
     frame: Frame
     glances: tuple[Glance, ...]
-    doing: tuple[tuple[ActivityName, int], ...]
+    counts: tuple[Count, ...]
+    urgent: Urgent | None
+    state: str
     layout: str
+    chosen_layout: str
     form: Form
     longest_name: int
+    in_danger: tuple[StateWord, ...] = IN_DANGER
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,30 +1,41 @@
 """One tracker at a glance: where it stands against where it should, its wind and its alarms."""
 
-from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Sequence
 from dataclasses import dataclass
-from operator import itemgetter
 
-from app.alarms.catalogue import CATALOGUE
-from app.base.message import word
+from app.alarms.urgency import first_priority
+from app.base.message import NOTHING, Message, Word, say, word
+from app.tracker.protections.words import Protection
 from app.tracker.settings.config import MountKind, TrackerConfig
-from app.tracker.state.snapshot import ActivityName, Pair, Snapshot
-from app.tracker.values.alarm_words import QUIET, AlarmNow
+from app.tracker.settings.protections import StowName
+from app.tracker.state.snapshot import Pair, SiteSnapshot, Snapshot
+from app.tracker.values.operator_message import INFORMATION, OperatorMessage, StateWord
 from app.tracker.weather.weather import Quantity
+from app.web.languages.known import in_words
 
 BAR = 200.0
 WHOLE_TURN_DEG, ZENITH_DEG = (0.0, 360.0), (0.0, 90.0)
-NOT_STOWED = CATALOGUE["not_stowed"]
 LOOKS = {
-    ActivityName.JOGGING: "manual",
-    ActivityName.MOVING: "manual",
-    ActivityName.MEASURING: "manual",
-    ActivityName.HOMING: "manual",
-    ActivityName.SETTING_HOME: "manual",
-    ActivityName.STOWING: "under-way",
-    ActivityName.FAULTED: "fault",
+    StateWord.NOT_STOWED: "fault",
+    StateWord.FAULT: "fault",
+    StateWord.NO_CONNECTION: "unknown",
+    StateWord.STOPPING: "under-way",
+    StateWord.JOGGING: "manual",
+    StateWord.HOMING: "manual",
+    StateWord.SETTING_HOME: "manual",
+    StateWord.DRIVE_TEST: "manual",
+    StateWord.MOVING: "manual",
+    StateWord.STOWING: "under-way",
+    StateWord.MOVING_TO_THE_SUN: "under-way",
+    StateWord.LOCAL: "manual",
+    StateWord.INHIBITED: "manual",
+    StateWord.SERVICE_MODE: "manual",
 }
-"""How the tile of a tracker looks that does what is not its normal day; tiles.js is told the same."""
+"""How the tile of a tracker looks whose state is not its normal day; tiles.js is told the same."""
+IN_DANGER = (StateWord.NOT_STOWED, StateWord.FAULT, StateWord.NO_CONNECTION)
+"""The states whose count has the color of their most urgent alarm."""
+TOLD_ON_TOP = 2
+"""The least urgent priority of which the overview tells its most urgent tracker above all others."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,62 +58,115 @@ class Bar:
 class Glance:
     """A tracker on the overview; `wind` is the place of its wind sensor among `one.sensors`, None without.
 
-    `trouble` names the most urgent of its alarms, of which `priority` is 0 without any. That it does not stow
-    in a storm is its own state: it is told although the list of alarms, which is cut off, does not name it.
-    `look` is how its tile looks, `tilt_deg` how far its panel is turned from level, seen from the side.
+    `priority` is that of its most urgent alarm, 0 without any, and `trouble` the first thing to know about
+    it. `look` is how its tile looks, `tilt_deg` how far its panel is turned from level, seen from the side,
+    None where that was never measured.
     """
 
     one: Snapshot
     bars: tuple[Bar, ...]
     wind: int | None
     priority: int
-    alarms: int
-    trouble: str
+    trouble: Message
     done: int
     next_step: str
     look: str
-    tilt_deg: int
+    tilt_deg: int | None
 
 
-def glance(
-    one: Snapshot, config: TrackerConfig | None, alarms: Iterable[AlarmNow], progress: tuple[int, str]
-) -> Glance:
+@dataclass(frozen=True, slots=True)
+class Count:
+    """How many trackers are in a state, and the priority of their most urgent alarm where it is a danger."""
+
+    state: StateWord
+    number: int
+    priority: int
+
+
+@dataclass(frozen=True, slots=True)
+class Urgent:
+    """The most urgent tracker of a site: what to know, how to open and to stow it, and how many are alike.
+
+    `stow` is the position to stow it in, empty for one whose trouble is another; `more` are the other
+    trackers in the same dangerous state.
+    """
+
+    message: OperatorMessage
+    one: Snapshot
+    open_label: Message
+    stow_label: Message
+    stow: str
+    more: int
+    more_short: Message
+    more_label: Message
+
+
+def glance(one: Snapshot, config: TrackerConfig | None, progress: tuple[int, str]) -> Glance:
     """Return what the overview shows of a tracker."""
-    mine = [alarm for alarm in alarms if alarm.tracker_id == one.tracker_id and alarm.state not in QUIET]
-    unlisted = one.not_stowed is not None and all(alarm.code != NOT_STOWED.code for alarm in mine)
-    standing = [(alarm.priority, alarm.heading) for alarm in mine]
-    standing += [(NOT_STOWED.priority, NOT_STOWED.title)] * unlisted
-    priority, trouble = min(standing, key=itemgetter(0), default=(0, ""))
     quantities = [sensor.quantity for sensor in one.sensors]
     return Glance(
         one=one,
         bars=bars(one, config),
         wind=quantities.index(Quantity.WIND) if Quantity.WIND in quantities else None,
-        priority=priority,
-        alarms=len(standing),
-        trouble=trouble,
+        priority=_color(first_priority(one)),
+        trouble=_trouble(one),
         done=progress[0],
         next_step=progress[1],
-        look=look(one),
-        tilt_deg=round(one.measured.elevation_deg - ZENITH_DEG[1]) if one.measured else 0,
+        look=LOOKS.get(one.state, ""),
+        tilt_deg=_tilt(one),
     )
 
 
-def look(one: Snapshot) -> str:
-    """Return how a tracker's tile looks, empty for a normal day: an alarm's color comes on top."""
-    if one.measured is None:
-        return "unknown"
-    return "under-way" if one.approaching else LOOKS.get(one.activity, "")
+def counts_of(trackers: Sequence[Snapshot]) -> tuple[Count, ...]:
+    """Return of every state how many trackers are in it, the most urgent first: the sum is all trackers."""
+    return tuple(_count(word, [one for one in trackers if one.state is word]) for word in StateWord)
 
 
-def doing(trackers: Iterable[Snapshot]) -> tuple[tuple[ActivityName, int], ...]:
-    """Return of everything that a tracker may do how many do it.
+def urgent_of(site: SiteSnapshot) -> Urgent | None:
+    """Return the most urgent tracker of a site, None where nothing is wrong that cannot wait."""
+    first = next((message for message in site.messages if message.tracker_id is not None), None)
+    if first is None or first.priority > TOLD_ON_TOP:
+        return None
+    one = next(one for one in site.trackers if one.tracker_id == first.tracker_id)
+    alike = sum(other.state is one.state for other in site.trackers) - 1 if one.state in IN_DANGER else 0
+    return Urgent(
+        message=first,
+        one=one,
+        open_label=say("Open {tracker}", tracker=one.tracker_id),
+        stow_label=say("Stow {tracker}", tracker=one.tracker_id),
+        stow=stow_position(one) if one.state is StateWord.NOT_STOWED else "",
+        more=alike,
+        more_short=say("{count} more", count=alike),
+        more_label=say("{count} more: {state}", count=alike, state=Word(in_words(one.state))),
+    )
 
-    Those on the way to the sun, and those that do not stow in a storm, are counted as that: the sum is
-    all trackers.
-    """
-    counted = Counter(one.activity for one in trackers if not one.approaching and not one.not_stowed)
-    return tuple((name, counted[name]) for name in ActivityName)
+
+def stow_position(one: Snapshot) -> StowName:
+    """Return where a tracker is safe now: against snow where that is what it is protected against."""
+    snows = one.protection is not None and one.protection.protection is Protection.SNOW
+    return StowName.SNOW if snows else StowName.WIND
+
+
+def _count(word: StateWord, trackers: Sequence[Snapshot]) -> Count:
+    worst = min(map(first_priority, trackers), default=INFORMATION)
+    return Count(word, len(trackers), _color(worst) if word in IN_DANGER else 0)
+
+
+def _color(priority: int) -> int:
+    return priority if priority < INFORMATION else 0
+
+
+def _trouble(one: Snapshot) -> Message:
+    """Return the first thing to know about a tracker; what its state says already is told with its cause."""
+    if not one.messages:
+        return NOTHING
+    first = one.messages[0]
+    return first.message if first.code == one.state and first.message else first.title
+
+
+def _tilt(one: Snapshot) -> int | None:
+    known = one.measured or one.last_measured
+    return None if known is None else round(known.elevation_deg - ZENITH_DEG[1])
 
 
 def bars(one: Snapshot, config: TrackerConfig | None) -> tuple[Bar, ...]:

@@ -9,14 +9,14 @@ from app.alarms.catalogue import ANY_FAULT
 from app.base.message import N_
 from app.tracker.state.snapshot import ActivityName, ShowPhase, Snapshot
 from app.tracker.values.alarm_words import CALLING, QUIET, AlarmState
-from app.tracker.values.operator_message import OperatorMessage
+from app.tracker.values.operator_message import INFORMATION, OperatorMessage, StateWord
 from app.web.charts.axis import ANGLE_STEPS_DEG, NUMBER_STEPS, TIME_STEPS_S
 from app.web.charts.drawings import HORIZON, SET_DEG
 from app.web.languages.catalogue import catalogue_of
 from app.web.live.hold_to_run import LATEST_HEARTBEAT
 from app.web.live.live_protocol import FLOODED
 from app.web.shell.formats import MEASURES, NAMELESS
-from app.web.shell.glances import BAR, LOOKS
+from app.web.shell.glances import BAR, IN_DANGER, LOOKS, TOLD_ON_TOP
 from app.web.shell.theme import A_YEAR_S
 from app.web.shell.themes import CHOICES, GLARE_ABOVE_DEG, NIGHT_BELOW_DEG
 
@@ -83,6 +83,8 @@ def page_facts(code: str) -> Markup:
         "flooded": FLOODED,
         "bar": BAR,
         "looks": {name.value: one for name, one in LOOKS.items()},
+        "states": list(StateWord),
+        "urgency": {"in_danger": IN_DANGER, "on_top": TOLD_ON_TOP, "information": INFORMATION},
         "messages": {code: (end, catalogue.said(label)) for code, (end, label) in MESSAGE_LINKS.items()}
         | {"in_page": IN_PAGE},
         "sky": {"radius": HORIZON, "set_deg": SET_DEG},

@@ -1,12 +1,13 @@
 """The site: its trackers at a glance, a new tracker, the site's name, and STOP for all."""
 
 from enum import StrEnum
-from typing import Annotated
+from typing import Annotated, Literal
 
 from fastapi import Form
 from starlette.requests import Request
 from starlette.responses import Response
 
+from app.alarms.urgency import by_urgency
 from app.base.message import N_, Message, say
 from app.base.names import LONGEST_TYPED, tidy, unseen
 from app.base.permission import Permission
@@ -14,13 +15,14 @@ from app.link.messages import AddTracker, RenameSite, SiteDetail, StopAll
 from app.tracker.commissioning.steps import StepStatus
 from app.tracker.settings.config import LONGEST_NAME, TrackerConfig
 from app.tracker.state.snapshot import SiteSnapshot
+from app.tracker.values.operator_message import StateWord
 from app.web.http.late_routes import page_router
 from app.web.http.needs import needs
 from app.web.shell.contexts import Field, OverviewPage
 from app.web.shell.contexts import Form as Fields
 from app.web.shell.deps import MachineDep
 from app.web.shell.frame import STEP_LABELS, site_frame
-from app.web.shell.glances import Glance, doing, glance
+from app.web.shell.glances import Glance, counts_of, glance, urgent_of
 from app.web.shell.orders import PressDep
 from app.web.shell.render import go, page
 
@@ -39,9 +41,14 @@ class Layout(StrEnum):
 
 @router.get("/")
 @needs(Permission.READ)
-async def overview(request: Request, machine: MachineDep, layout: Layout | None = None) -> Response:
-    """Show every tracker of the site; many of them in rows, a field as tiles."""
-    return _answer(request, await machine.detail(), layout=layout)
+async def overview(
+    request: Request,
+    machine: MachineDep,
+    layout: Layout | None = None,
+    state: StateWord | Literal[""] = "",
+) -> Response:
+    """Show every tracker of the site, the most urgent first, or those in one state."""
+    return _answer(request, await machine.detail(), layout=layout, state=state)
 
 
 @router.post("/trackers")
@@ -95,6 +102,7 @@ def _answer(
     errors: dict[str, Message] | None = None,
     status: int = 200,
     layout: Layout | None = None,
+    state: str = "",
 ) -> Response:
     frame = site_frame(request, N_("Trackers"))
     errors = errors or {}
@@ -103,8 +111,11 @@ def _answer(
     context = OverviewPage(
         frame=frame,
         glances=(glances := _glances(frame.site, detail)),
-        doing=doing(one.one for one in glances),
+        counts=counts_of(tuple(one.one for one in glances)),
+        urgent=urgent_of(frame.site) if frame.site else None,
+        state=state,
         layout=layout or _layout(len(glances)),
+        chosen_layout=layout or "",
         form=form,
         longest_name=LONGEST_NAME,
     )
@@ -126,8 +137,8 @@ def _glances(site: SiteSnapshot | None, detail: SiteDetail) -> tuple[Glance, ...
         return ()
     progress = _progress(detail)
     return tuple(
-        glance(one, _config(detail, one.tracker_id), site.alarms, progress.get(one.tracker_id, (0, "")))
-        for one in site.trackers
+        glance(one, _config(detail, one.tracker_id), progress.get(one.tracker_id, (0, "")))
+        for one in by_urgency(site.trackers)
     )
 
 
