@@ -111,14 +111,17 @@ def _holding(tracker: Snapshot) -> StateWord:
 def messages_of(
     tracker: Snapshot, alarms: Mapping[str, Alarm], last: Event | None
 ) -> tuple[OperatorMessage, ...]:
-    """Return what to know about a tracker, the most urgent first.
+    """Return what to know about a tracker, the most urgent first, each code once.
 
     `alarms` are those of the tracker by `alarm_id`: one that was shelved, or is suppressed, is not told.
     A motion that is announced comes after what has priority 1, a stop by somebody before what is waited for.
     """
     urgent = sorted(_alarms(tracker, alarms), key=attrgetter("priority"))
     first = sum(1 for message in urgent if message.priority == 1)
-    return (*urgent[:first], *_announced(tracker), *urgent[first:], *_information(tracker, last))
+    found: dict[str, OperatorMessage] = {}
+    for one in (*urgent[:first], *_announced(tracker), *urgent[first:], *_information(tracker, last)):
+        found.setdefault(one.code, one)
+    return tuple(found.values())
 
 
 def _alarms(tracker: Snapshot, alarms: Mapping[str, Alarm]) -> Iterator[OperatorMessage]:

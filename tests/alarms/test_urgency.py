@@ -13,7 +13,7 @@ from app.tracker.state.snapshot import Event, EventKind, Pair, Snapshot
 from app.tracker.values.actors import CONTROLLER
 from app.tracker.values.operator_message import INFORMATION, StateWord
 from app.tracker.values.reason import Reason
-from tests.every_state import AT, CASES, FAULT, NOT_STOWED, OPERATOR, SILENT, Case, StagedTracker
+from tests.every_state import AT, CASES, FAULT, NOT_STOWED, OPERATOR, SILENT, SUN_DOWN, Case, StagedTracker
 from tests.fake_alarms import alarm
 from tests.fake_data import commissioned
 
@@ -75,6 +75,11 @@ def test_what_a_stop_ended_does_not_hide_who_stopped_whatever_is_told_first() ->
     stop, ended = event(EventKind.STOPPED), event(EventKind.TRACKING_ENDED)
     assert newest(newest(None, stop), ended) is stop
     assert newest(newest(None, ended), stop) is stop
+
+
+def test_what_two_parts_of_a_snapshot_say_is_told_once() -> None:
+    twice = tracker(CASES["waiting"], notices=(SUN_DOWN, SUN_DOWN))
+    assert codes(twice) == ["sun_down"]
 
 
 def test_a_shelved_alarm_is_not_told_and_one_that_calls_says_so() -> None:

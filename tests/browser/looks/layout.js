@@ -93,8 +93,13 @@
     while (getComputedStyle(block).display === "inline") block = block.parentElement;
     for (const rect of range.getClientRects()) {
       if (rect.width < 1) continue;
-      const box = seen(rect, e);
-      const hides = e.closest("[style*=overflow]") || getComputedStyle(block).textOverflow === "ellipsis";
+      let box = seen(rect, e);
+      const ends = getComputedStyle(block).textOverflow === "ellipsis";
+      if (ends) {
+        const { left, right } = block.getBoundingClientRect();
+        box = { left: Math.max(box.left, left), right: Math.min(box.right, right), top: box.top, bottom: box.bottom };
+      }
+      const hides = e.closest("[style*=overflow]") || ends;
       if (!scroller(e) && !hides && (rect.left < -1 || rect.right > innerWidth + 1)) tell("beside the screen", e);
       const panel = e.closest(".panel")?.getBoundingClientRect();
       if (panel && !hides && (box.left < panel.left - 1 || box.right > panel.right + 1)) tell("beside its panel", e);
