@@ -121,6 +121,8 @@ CUT_WORDS = """texts => {
 
 def test_every_state_is_told_in_full_in_the_bar_in_every_language(plant: Plant, opened: Opened) -> None:
     """The words of each language are put into one page: the bar has no others that differ."""
+    tracker = plant.machine.trackers["T1"]
+    tracker.config = replace(tracker.config, name="South-eastern field behind the workshop")
     raised(plant, "drive_lost", "link_poor", "gateway_down")
     page = opened("/trackers/T1", "phone")
     for size in ("phone", "tablet"):
