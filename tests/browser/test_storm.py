@@ -5,6 +5,7 @@ from playwright.sync_api import Locator, Page, expect
 
 from tests.browser.conftest import Opened, Plant, now
 from tests.browser.storm import IN_DANGER, STOWING, endanger, sixty_in_a_storm, stow
+from tests.e2e.chromium import PAGE_READY
 from tests.patience import until
 
 FOUR = ["T5", *IN_DANGER]
@@ -53,6 +54,7 @@ def test_from_the_first_page_to_stow_of_each_in_danger_it_is_two_taps(
         assert entry.evaluate(IN_SIGHT), "it is seen without scrolling"
         entry.locator("a").first.click()
         expect(page).to_have_url(f"{storm.url}/trackers/{name}")
+        page.wait_for_selector(PAGE_READY)
         page.locator(f'form[action="/trackers/{name}/stow"] button:visible').first.click()
         until(lambda: stowed(storm)[-1:] == [name], "the order arrives")  # noqa: B023 - waited for here
     assert stowed(storm) == list(IN_DANGER)
@@ -103,7 +105,7 @@ def test_a_count_shows_its_trackers_alone_until_it_is_tapped_again(storm: Plant,
     page.reload()
     expect(count(page, "stowing")).to_have_attribute("aria-pressed", "true")
     assert order(page) == list(STOWING)
-    page.wait_for_selector('html[data-link="live"]')
+    page.wait_for_selector(PAGE_READY)
     storm.do(lambda: stow(storm.machine, "T12"))
     expect(page.locator('[data-item="T12"]')).to_be_hidden()
     storm.do(lambda: stow(storm.machine, "T44"))
