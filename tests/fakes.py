@@ -145,6 +145,7 @@ class FakeMachine:
         self.rejects: dict[str, tuple[Reason, ...]] = {}
         self.refusal = ""
         self.reachable = True
+        self.off_s: float | None = None
         self.weather: WeatherNow | None = None
         self.alarms: tuple[AlarmNow, ...] = ()
         self.last: dict[str, Event | None] = {}
@@ -288,7 +289,9 @@ class FakeMachine:
             site_name=self.site.name,
             location=self.site.location,
             time_zone=self.site.time_zone,
-            clock=ClockState(clock.source, clock.offset_s, clock.source != "unset", None, clock.set_at),
+            clock=ClockState(
+                clock.source, clock.offset_s, clock.source != "unset", None, clock.set_at, off_s=self.off_s
+            ),
             sun=made_up_sun(now),
             trackers=(trackers := tuple(self._told(one, now) for one in self.trackers.values())),
             weather=self.weather,

@@ -15,7 +15,9 @@ function tick() {
   const now = live.machineNow();
   const seconds = now === null ? null : (Date.parse(now) - device.getTime()) / 1000;
   document.getElementById("clock-difference").textContent = seconds === null ? "–" : signedSeconds(seconds);
-  document.getElementById("clock-apart").toggleAttribute("data-off", seconds !== null && Math.abs(seconds) > ASKED_FROM_S);
+  const apart = seconds !== null && Math.abs(seconds) > ASKED_FROM_S;
+  document.getElementById("clock-apart").toggleAttribute("data-off", apart);
+  document.getElementById("clock-error")?.toggleAttribute("hidden", apart); // an error of 0 s contradicts it
   document.getElementById("clock-verdict").textContent = seconds === null ? "" : verdict(seconds);
 }
 

@@ -1,10 +1,14 @@
 """A clock that differs from that of the device at hand is asked about before step 2 is done."""
 
+from dataclasses import replace
 from datetime import timedelta
 
 import httpx
 
+from app.base.zones import zone_of
 from app.link.messages import SetClock
+from app.sun.position import Algorithm, sun_position
+from app.tracker.memory.memory import ClockSetting
 from tests.fakes import FakeMachine
 
 PAGE = "/trackers/T1/commissioning/clock"
@@ -38,12 +42,16 @@ async def test_a_minute_is_not_asked_about(machine: FakeMachine, client: httpx.A
 
 
 async def test_a_typed_time_is_asked_about_and_kept(machine: FakeMachine, client: httpx.AsyncClient) -> None:
+    machine.rest()
     typed = {"date": "2026-06-21", "time": "12:00:30", "time_zone": "UTC"}
     device = {"at": "2026-06-21T21:00:30+00:00"}
     asked = await client.post(PAGE, data=typed | device, headers=HTMX)
     assert asked.status_code == 422
     assert "9 h 00 min behind this device" in asked.text
     assert 'value="12:00:30"' in asked.text
+    assert asked.text.index("Set the clock</button>") < asked.text.index("data-hold"), (
+        "Enter must not confirm"
+    )
     assert not orders(machine)
     done = await client.post(PAGE, data=typed | device | {"confirmed": "yes"}, headers=HTMX)
     assert (done.status_code, len(orders(machine))) == (204, 1)
@@ -52,6 +60,7 @@ async def test_a_typed_time_is_asked_about_and_kept(machine: FakeMachine, client
 async def test_a_program_confirms_a_clock_that_differs(
     machine: FakeMachine, client: httpx.AsyncClient
 ) -> None:
+    machine.rest()
     late = (machine.clock.now() - AHEAD).isoformat()
     for asked in (
         {"source": "system", "device_at": late},
@@ -66,3 +75,68 @@ async def test_a_program_confirms_a_clock_that_differs(
     agreed = {"source": "manual", "at": late, "device_at": late}
     assert (await client.put(CLOCK, json=agreed)).status_code == 200
     assert len(orders(machine)) == 4
+
+
+async def test_copying_a_device_asks_by_how_much_and_where_the_sun_stands(
+    machine: FakeMachine, client: httpx.AsyncClient
+) -> None:
+    machine.rest()
+    new, place = machine.clock.now() - AHEAD, machine.site.location
+    assert place is not None
+    device = {"at": new.isoformat()}
+    asked = await client.post(f"{PAGE}/device", data=device, headers=HTMX)
+    assert asked.status_code == 422
+    assert "The controller&#39;s clock would be set back by 11 h 39 min." in asked.text
+    shown = new.astimezone(zone_of(machine.site.time_zone))
+    assert f"It would show {shown:%Y-%m-%d %H:%M:%S} ({machine.site.time_zone})." in asked.text
+    for which, at in (("present", machine.clock.now()), ("new", new)):
+        sun = sun_position(Algorithm.PSA, place, at)
+        told = f"azimuth {sun.azimuth_deg:.1f}°, elevation {sun.apparent_elevation_deg:.1f}°"
+        assert f"By the {which} clock, the sun is at {told}." in asked.text.replace("−", "-")
+    assert "Compare with a third clock." in asked.text
+    assert "data-hold" in asked.text
+    assert not orders(machine)
+    done = await client.post(f"{PAGE}/device", data=device | {"confirmed": "yes"}, headers=HTMX)
+    assert (done.status_code, [one.at for one in orders(machine)]) == (204, [new])
+
+
+async def test_without_a_location_nothing_is_told_of_the_sun(
+    machine: FakeMachine, client: httpx.AsyncClient
+) -> None:
+    machine.rest()
+    machine.site = replace(machine.site, location=None)
+    device = {"at": (machine.clock.now() + AHEAD).isoformat()}
+    asked = await client.post(f"{PAGE}/device", data=device, headers=HTMX)
+    assert "would be set forward by 11 h 39 min." in asked.text
+    assert "the sun is at" not in asked.text
+
+
+async def test_the_system_clock_is_asked_about_where_it_moves_the_clock_of_the_site(
+    machine: FakeMachine, client: httpx.AsyncClient
+) -> None:
+    machine.rest()
+    machine.site = replace(machine.site, clock=ClockSetting("manual", AHEAD.total_seconds()))
+    machine.emit()
+    asked = await client.post(f"{PAGE}/system", data={"at": machine.clock.now().isoformat()}, headers=HTMX)
+    assert asked.status_code == 422
+    assert "would be set back by 11 h 39 min." in asked.text
+    assert "data-hold" in asked.text
+
+
+async def test_a_clock_is_refused_while_a_tracker_tracks_before_it_is_asked_about(
+    machine: FakeMachine, client: httpx.AsyncClient
+) -> None:
+    late = machine.clock.now() - AHEAD
+    typed = {"date": "2026-06-21", "time": "12:00:30", "time_zone": "UTC"}
+    for answer in (
+        await client.post(f"{PAGE}/device", data={"at": late.isoformat()}, headers=HTMX),
+        await client.post(PAGE, data=typed, headers=HTMX),
+        await client.put(CLOCK, json={"source": "manual", "at": late.isoformat()}),
+    ):
+        assert answer.status_code == 409
+        assert "T2 is tracking the sun by the present clock." in answer.text
+        assert "End tracking of T2 first." in answer.text
+        assert "confirmed" not in answer.text
+    assert not orders(machine)
+    near = {"at": (machine.clock.now() + timedelta(seconds=30)).isoformat()}
+    assert (await client.post(f"{PAGE}/device", data=near, headers=HTMX)).status_code == 204

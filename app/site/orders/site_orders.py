@@ -3,6 +3,7 @@
 import asyncio
 from base64 import b64decode
 from dataclasses import replace
+from datetime import timedelta
 
 from app.base.clock import give_way
 from app.base.logs import get_logger
@@ -25,7 +26,7 @@ from app.site.orders import tracker_orders
 from app.site.state.model import SiteModel
 from app.site.state.validation import check_name, check_time_zone
 from app.store.store import PlannedShow, Writer
-from app.tracker.access.location_change import following
+from app.tracker.access.location_change import against_another_clock, following
 from app.tracker.commands.commands import CommandRejected
 from app.tracker.memory.memory import Confirmation, SiteState, StepName
 from app.tracker.memory.recording import RecordingInfo
@@ -93,8 +94,12 @@ async def set_horizon(model: SiteModel, command: SetHorizon, actor: str) -> tupl
 
 
 async def set_clock(model: SiteModel, command: SetClock, actor: str) -> tuple[Event, ...]:
-    """Choose the clock of the site."""
+    """Choose the clock of the site, or raise `CommandRejected` where it would move a panel that tracks."""
     setting = model.timekeeper.choose(command.source, command.at, actor)
+    moved = timedelta(seconds=setting.offset_s - model.timekeeper.setting.offset_s)
+    doing = {key: (loop.activity, loop.memory.tracking_on) for key, loop in model.loops.items()}
+    if reasons := against_another_clock(moved, doing):
+        raise CommandRejected(*reasons)
     zone = model.state.time_zone if command.time_zone is None else check_time_zone(command.time_zone)
     state = replace(model.state, clock=setting, time_zone=zone)
     given = Confirmation(setting.set_at or model.now(), actor, state.location_revision)

@@ -1,6 +1,7 @@
-"""What forbids another location: settings that are locked, and trackers that follow the sun."""
+"""What forbids another location or clock: settings that are locked, trackers that follow the sun."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from datetime import timedelta
 
 from app.base.message import say
 from app.tracker.access.local_locks import locked_settings
@@ -9,6 +10,8 @@ from app.tracker.state.snapshot import ActivityName
 from app.tracker.values.reason import Reason
 
 FOLLOWS_THE_SUN = frozenset({ActivityName.TRACKING, ActivityName.SHOWING})
+MOST_WHILE_TRACKING = timedelta(minutes=1)
+"""So much may the clock be moved under a tracker that tracks: the sun moves by a quarter of a degree."""
 
 
 def against_another_location(
@@ -33,3 +36,35 @@ def following(doing: Mapping[str, ActivityName]) -> tuple[Reason, ...]:
         for tracker_id, activity in doing.items()
         if activity in FOLLOWS_THE_SUN
     )
+
+
+def against_another_clock(
+    by: timedelta, doing: Mapping[str, tuple[ActivityName, bool]]
+) -> tuple[Reason, ...]:
+    """Return which trackers forbid that the site's clock moves by so much.
+
+    Of each is told what it does, and whether tracking is on: it may continue after a stow or a fault.
+    """
+    return () if abs(by) <= MOST_WHILE_TRACKING else tuple(_led_by_the_clock(doing))
+
+
+def _led_by_the_clock(doing: Mapping[str, tuple[ActivityName, bool]]) -> Iterator[Reason]:
+    for tracker_id, (activity, tracking_on) in doing.items():
+        end_tracking = say("End tracking of {tracker_id} first.", tracker_id=tracker_id)
+        match activity:
+            case ActivityName.TRACKING:
+                text = say("{tracker_id} is tracking the sun by the present clock.", tracker_id=tracker_id)
+                yield Reason("follows_the_clock", text, end_tracking)
+            case ActivityName.SHOWING:
+                text = say("{tracker_id} is running a show by the present clock.", tracker_id=tracker_id)
+                yield Reason(
+                    "follows_the_clock", text, say("Stop {tracker_id} first.", tracker_id=tracker_id)
+                )
+            case ActivityName.STOWING | ActivityName.STOWED | ActivityName.FAULTED if tracking_on:
+                text = say(
+                    "{tracker_id} may continue tracking automatically by the present clock.",
+                    tracker_id=tracker_id,
+                )
+                yield Reason("follows_the_clock", text, end_tracking)
+            case _:
+                pass

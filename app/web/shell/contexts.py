@@ -236,16 +236,18 @@ class ClockPage:
     zones: tuple[str, ...]
     setting: ClockSetting
     doubt: str = ""
+    moves: tuple[str, ...] = ()
     is_saved: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class ClockQuestion:
-    """The question before a clock is trusted that differs from this device's."""
+    """The question before a clock is trusted that differs from this device's, or that `moves` the site's."""
 
     template: ClassVar[str] = "_clock_question.html"
 
     doubt: str
+    moves: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

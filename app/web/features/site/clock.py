@@ -1,6 +1,6 @@
 """Step 2: whose clock to trust, and the sun now, to be held against a shadow."""
 
-from datetime import datetime
+from datetime import datetime, timedelta
 from typing import Annotated
 
 from fastapi import Form
@@ -9,18 +9,18 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from app.base.instants import read_instant
-from app.base.message import N_
+from app.base.message import N_, Message
 from app.base.permission import Permission
 from app.link.messages import SetClock, SiteDetail
 from app.tracker.memory.memory import StepName
-from app.web.features.site.clock_doubt import clock_doubt
+from app.web.features.site.clock_doubt import clock_doubt, clock_moves, refuse_before_asking
 from app.web.features.site.location import zones
 from app.web.http.errors import NotAcceptable
 from app.web.http.late_routes import page_router
 from app.web.http.needs import needs
 from app.web.http.whole_forms import MAY_BE_ABSENT
 from app.web.shell.contexts import ClockPage, ClockQuestion
-from app.web.shell.deps import MachineDep, PanelDep
+from app.web.shell.deps import Panel, PanelDep
 from app.web.shell.formats import local
 from app.web.shell.forms import Typed, in_zone
 from app.web.shell.orders import PressDep
@@ -62,17 +62,22 @@ async def keep_system(
     tracker_id: str, press: PressDep, built: PanelDep, at: DeviceAt = "", confirmed: Confirmed = ""
 ) -> Response:
     """Trust the clock of the controller's computer; ask first where it differs from this device's."""
+    detail, seen, now = await built.machine.detail(), built.machine.latest(), built.site_now()
+    new = now - timedelta(seconds=seen.clock.offset_s if seen else 0.0)
+    moves = _moves(built, detail, new, detail.site.time_zone)
     doubt = clock_doubt(built.clock.system_time(), _told(at))
-    if doubt and confirmed != "yes":
-        return page(press.request, ClockQuestion(doubt), status=422)
+    if (doubt or moves) and confirmed != "yes":
+        return page(press.request, ClockQuestion(doubt, moves), status=422)
     await press.send(SetClock("system"))
     return go(press.request, _saved(tracker_id))
 
 
 @router.post("/device")
 @needs(Permission.CONFIGURE)
-async def copy_device(tracker_id: str, press: PressDep, at: DeviceAt = "") -> Response:
-    """Make the controller's clock show what this device's clock shows."""
+async def copy_device(
+    tracker_id: str, press: PressDep, built: PanelDep, at: DeviceAt = "", confirmed: Confirmed = ""
+) -> Response:
+    """Make the controller's clock show what this device's shows; ask first where that moves it."""
     try:
         instant = read_instant(at)
     except ValueError:
@@ -83,6 +88,10 @@ async def copy_device(tracker_id: str, press: PressDep, at: DeviceAt = "") -> Re
         raise NotAcceptable(
             N_("This device reported its time without a time zone; enter date and time manually.")
         )
+    detail = await built.machine.detail()
+    moves = _moves(built, detail, instant, detail.site.time_zone)
+    if moves and confirmed != "yes":
+        return page(press.request, ClockQuestion("", moves), status=422)
     await press.send(SetClock("manual", instant))
     return go(press.request, _saved(tracker_id))
 
@@ -90,20 +99,22 @@ async def copy_device(tracker_id: str, press: PressDep, at: DeviceAt = "") -> Re
 @router.post("")
 @needs(Permission.CONFIGURE)
 async def set_by_hand(
-    tracker_id: str, press: PressDep, machine: MachineDep, typed: Annotated[ClockForm, Form()]
+    tracker_id: str, press: PressDep, built: PanelDep, typed: Annotated[ClockForm, Form()]
 ) -> Response:
-    """Set the controller's clock to a typed date and time; ask first where this device's differs."""
+    """Set the controller's clock to a typed date and time; ask first where a clock differs."""
+    detail = await built.machine.detail()
     at, confirmed = typed.at, typed.confirmed
     found = Typed(typed.model_dump(include=set(NAMES)))
     day, time = found.day("date", N_("Date")), found.clock_time("time", N_("Time"))
     if typed.time_zone not in zones():
         found.errors["time_zone"] = N_("Choose a time zone from the list.")
     if found.errors:
-        return _answer(press.request, tracker_id, await machine.detail(), found, status=422)
+        return _answer(press.request, tracker_id, detail, found, status=422)
     instant = in_zone(day, time, typed.time_zone)
     doubt = clock_doubt(instant, _told(at))
-    if doubt and confirmed != "yes":
-        return _answer(press.request, tracker_id, await machine.detail(), found, status=422, doubt=doubt)
+    moves = _moves(built, detail, instant, typed.time_zone)
+    if (doubt or moves) and confirmed != "yes":
+        return _answer(press.request, tracker_id, detail, found, status=422, doubt=doubt, moves=moves)
     await press.send(SetClock("manual", instant, typed.time_zone))
     return go(press.request, _saved(tracker_id))
 
@@ -115,6 +126,13 @@ def _told(at: str) -> datetime | None:
     except ValueError:
         return None
     return instant if instant.tzinfo else None
+
+
+def _moves(built: Panel, detail: SiteDetail, new: datetime, zone: str) -> tuple[Message, ...]:
+    """Return what a new clock would change; refuse it where a tracker is led by the present one."""
+    present = built.site_now()
+    refuse_before_asking(new - present, built.machine.latest())
+    return clock_moves(present, new, zone, detail.site.location)
 
 
 def _saved(tracker_id: str) -> str:
@@ -129,6 +147,7 @@ def _answer(
     *,
     status: int = 200,
     doubt: str = "",
+    moves: tuple[str, ...] = (),
     is_saved: bool = False,
 ) -> Response:
     frame = wizard_frame(request, tracker_of(detail, tracker_id), StepName.CLOCK)
@@ -138,6 +157,7 @@ def _answer(
         zones=zones(),
         setting=detail.site.clock,
         doubt=doubt,
+        moves=moves,
         is_saved=is_saved,
     )
     return page(request, context, block="manual", status=status)

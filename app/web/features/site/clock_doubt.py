@@ -1,9 +1,14 @@
-"""Whether a clock is likely to be wrong: it differs from that of the device at hand."""
+"""Whether a clock is likely to be wrong: it differs from that of the device at hand, or from the present."""
 
+from collections.abc import Iterator
 from datetime import datetime, timedelta
 
-from app.base.message import NOTHING, Message, say
-from app.web.shell.formats import duration
+from app.base.message import NOTHING, Message, say, with_format
+from app.sun.position import Algorithm, InstantRefused, Location, SunPosition, sun_position
+from app.tracker.access.location_change import against_another_clock
+from app.tracker.commands.commands import CommandRejected
+from app.tracker.state.snapshot import SiteSnapshot
+from app.web.shell.formats import duration, local
 
 MOST_APART = timedelta(minutes=1)
 """The sun moves by a quarter of a degree in this time."""
@@ -21,4 +26,43 @@ def clock_doubt(clock: datetime, device: datetime | None) -> Message:
         )
     return say(
         "The controller's clock is {length} behind this device's clock. Which one is right?", length=length
+    )
+
+
+def refuse_before_asking(by: timedelta, now: SiteSnapshot | None) -> None:
+    """Raise `CommandRejected` where the clock cannot be moved by so much: it is in vain to ask about it."""
+    doing = {one.tracker_id: (one.activity, one.tracking_on) for one in (now.trackers if now else ())}
+    if reasons := against_another_clock(by, doing):
+        raise CommandRejected(*reasons)
+
+
+def clock_moves(
+    present: datetime, new: datetime, zone: str, location: Location | None
+) -> tuple[Message, ...]:
+    """Return what a new clock would change, nothing where it moves the site's by no more than a minute."""
+    return () if abs(new - present) <= MOST_APART else tuple(_moves(present, new, zone, location))
+
+
+def _moves(present: datetime, new: datetime, zone: str, location: Location | None) -> Iterator[Message]:
+    length = duration(abs(new - present))
+    if new > present:
+        yield say("The controller's clock would be set forward by {length}.", length=length)
+    else:
+        yield say("The controller's clock would be set back by {length}.", length=length)
+    yield say("It would show {at} ({zone}).", at=local(new, zone, "%Y-%m-%d %H:%M:%S"), zone=zone)
+    if location is None:
+        return
+    try:
+        before, after = (sun_position(Algorithm.PSA, location, at) for at in (present, new))
+    except InstantRefused:
+        return
+    yield say("By the present clock, the sun is at {sun}.", sun=_seen(before))
+    yield say("By the new clock, the sun is at {sun}.", sun=_seen(after))
+
+
+def _seen(sun: SunPosition) -> Message:
+    return say(
+        "azimuth {azimuth_deg}°, elevation {elevation_deg}°",
+        azimuth_deg=with_format(sun.azimuth_deg, ".1f"),
+        elevation_deg=with_format(sun.apparent_elevation_deg, ".1f"),
     )

@@ -17,7 +17,7 @@ from app.tracker.values.reason import Reason
 from app.web.api.base import CHANGED, REFUSED, TAGGED, Clean, Input, Output, api_router
 from app.web.api.orders import SenderDep, listed
 from app.web.api.tags import of_site, tagged, unless_changed
-from app.web.features.site.clock_doubt import clock_doubt
+from app.web.features.site.clock_doubt import clock_doubt, refuse_before_asking
 from app.web.features.site.place import place_doubts
 from app.web.http.errors import NotAcceptable
 from app.web.http.needs import needs
@@ -185,9 +185,12 @@ async def set_clock(change: ClockChange, sender: SenderDep, built: PanelDep) -> 
     """Trust the computer's clock or set the site's clock by hand.
 
     One that differs by more than a minute from `device_at`, or, where it is set by hand without that, from
-    the computer's clock, is refused with the difference until it is `confirmed`.
+    the computer's clock, is refused with the difference until it is `confirmed`. One that moves the site's
+    clock by more than a minute is refused while a tracker tracks, or may continue by itself.
     """
     now = built.clock.system_time()
+    if change.at:
+        refuse_before_asking(change.at - built.site_now(), built.machine.latest())
     other = change.device_at or (now if change.at else None)
     if (doubt := clock_doubt(change.at or now, other)) and not change.confirmed:
         raise NotAcceptable(
