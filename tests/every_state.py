@@ -98,7 +98,7 @@ CASES: dict[str, Case] = {
             "measured": None, "local": True, "waiting": (OPERATOR,), "warning": WarningState(4.0, AHEAD),
         },
         StateWord.NOT_STOWED,
-        "not_stowed",
+        "motion_ahead",
     ),
     "motion announced": Case(
         {"activity": ActivityName.TRACKING, "tracking_on": True, "warning": WarningState(4.0, AHEAD)},

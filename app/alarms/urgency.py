@@ -5,9 +5,10 @@ from dataclasses import replace
 from operator import attrgetter
 
 from app.alarms.alarm import Alarm
-from app.alarms.catalogue import CATALOGUE
+from app.alarms.catalogue import ANY_FAULT, CATALOGUE, entry_of
 from app.alarms.conditions import Condition, told_by_tracker
-from app.base.message import N_, Message, Word, say
+from app.base.message import N_, NOTHING, Message, Word, say
+from app.tracker.protections.words import ServiceState
 from app.tracker.state.snapshot import ActivityName, Event, EventKind, Snapshot
 from app.tracker.values.actors import CONTROLLER, LOCAL_USER
 from app.tracker.values.alarm_words import CALLING, MOST_SHOWN, AlarmNow, AlarmState
@@ -37,7 +38,11 @@ TOLD_OTHERWISE = frozenset(
 )
 """Events that another place of the page tells, or that did nothing to the tracker."""
 ACTIVE = (AlarmState.UNACKNOWLEDGED, AlarmState.ACKNOWLEDGED)
-_RANK = {word: place for place, word in enumerate(StateWord)}
+IN_DANGER = (StateWord.NOT_STOWED, StateWord.FAULT, StateWord.NO_CONNECTION)
+"""The states that are dangerous or not known, the most urgent first."""
+FIRST_STATES = (*IN_DANGER, StateWord.STOWING)
+"""The states in which trackers stand first, in this order; all others are equally urgent."""
+_RANK = {word: FIRST_STATES.index(word) for word in FIRST_STATES}
 _WORDS = {
     ActivityName.JOGGING: StateWord.JOGGING,
     ActivityName.MOVING: StateWord.MOVING,
@@ -113,13 +118,13 @@ def messages_of(
 ) -> tuple[OperatorMessage, ...]:
     """Return what to know about a tracker, the most urgent first, each code once.
 
-    `alarms` are those of the tracker by `alarm_id`: one that was shelved, or is suppressed, is not told.
-    A motion that is announced comes after what has priority 1, a stop by somebody before what is waited for.
+    `alarms` are those of the tracker by `alarm_id`: one that was shelved, or is suppressed, is not told,
+    unless it is the tracker's own state. A motion that is announced is first, since it begins within seconds;
+    a stop by somebody comes before what is waited for.
     """
     urgent = sorted(_alarms(tracker, alarms), key=attrgetter("priority"))
-    first = sum(1 for message in urgent if message.priority == 1)
     found: dict[str, OperatorMessage] = {}
-    for one in (*urgent[:first], *_announced(tracker), *urgent[first:], *_information(tracker, last)):
+    for one in (*_announced(tracker), *urgent, *_information(tracker, last)):
         found.setdefault(one.code, one)
     return tuple(found.values())
 
@@ -134,12 +139,18 @@ def _alarms(tracker: Snapshot, alarms: Mapping[str, Alarm]) -> Iterator[Operator
             present.setdefault(name, _condition(alarm))
     for name, condition in present.items():
         known = alarms.get(name)
-        if known is None or not known.silent:
+        if known is None or not known.silent or _is_state(condition.code, tracker):
             yield _of_condition(condition, known)
 
 
+def _is_state(code: str, tracker: Snapshot) -> bool:
+    """Return whether an alarm is the tracker's own state, which is told whatever was done with the alarm."""
+    fault = tracker.fault
+    return code in ("not_stowed", "drive_lost") or (fault is not None and code in (fault.code, ANY_FAULT))
+
+
 def _of_condition(condition: Condition, alarm: Alarm | None) -> OperatorMessage:
-    entry = CATALOGUE[condition.code]
+    entry = entry_of(condition.code)
     return OperatorMessage(
         condition.code,
         entry.priority,
@@ -166,7 +177,7 @@ def _information(tracker: Snapshot, last: Event | None) -> Iterator[OperatorMess
     if tracker.local:
         yield _LOCAL
     if tracker.service is not None:
-        yield _service(tracker.service.mode.name)
+        yield _service(tracker.service)
     request = tracker.control.request
     if request is not None:
         yield OperatorMessage(
@@ -185,12 +196,14 @@ def _of(reason: Reason) -> OperatorMessage:
     return OperatorMessage(reason.code, INFORMATION, reason.message, hint=reason.hint)
 
 
-def _service(name: str) -> OperatorMessage:
+def _service(service: ServiceState) -> OperatorMessage:
+    is_clear = service.clear_for_s > 0
     return OperatorMessage(
         "service",
         INFORMATION,
-        say("In service mode by {who}: slow jog only.", who=_name(name)),
-        hint=N_("Nothing moves until the area is confirmed clear."),
+        say("In service mode by {who}: slow jog only.", who=_name(service.mode.name)),
+        N_("The area is confirmed clear.") if is_clear else NOTHING,
+        NOTHING if is_clear else N_("Nothing moves until the area is confirmed clear."),
     )
 
 
@@ -215,13 +228,22 @@ def site_messages(trackers: Iterable[Snapshot], alarms: Iterable[AlarmNow]) -> t
 
 
 def by_urgency(trackers: Iterable[Snapshot]) -> list[Snapshot]:
-    """Return trackers with the most urgent first: by the priority of their first message, then by state."""
-    return sorted(trackers, key=lambda one: (first_priority(one), _RANK[one.state]))
+    """Return trackers with the most urgent first: by the priority of their headline, then danger by its kind.
+
+    Trackers that are equally urgent stay in their order.
+    """
+    return sorted(trackers, key=lambda one: (first_priority(one), _RANK.get(one.state, len(_RANK))))
+
+
+def headline(tracker: Snapshot) -> OperatorMessage | None:
+    """Return the most urgent message of a tracker: of its alarms, if any; else what it tells first."""
+    return min(tracker.messages[:2], key=attrgetter("priority"), default=None)
 
 
 def first_priority(tracker: Snapshot) -> int:
-    """Return the priority of the most urgent message of a tracker, `INFORMATION` without any alarm."""
-    return tracker.messages[0].priority if tracker.messages else INFORMATION
+    """Return the priority of the headline of a tracker, `INFORMATION` without any alarm."""
+    first = headline(tracker)
+    return INFORMATION if first is None else first.priority
 
 
 def _is_urgent(tracker: Snapshot) -> bool:
@@ -229,7 +251,10 @@ def _is_urgent(tracker: Snapshot) -> bool:
 
 
 def _at(tracker: Snapshot) -> OperatorMessage:
-    return replace(tracker.messages[0], tracker_id=tracker.tracker_id, where=tracker.name)
+    """Return what the site tells of a tracker: its headline, or that it is on local if nothing is urgent."""
+    first = headline(tracker)
+    told = first if first is not None and first.priority <= MOST_URGENT else _LOCAL
+    return replace(told, tracker_id=tracker.tracker_id, where=tracker.name)
 
 
 def _of_site(alarm: AlarmNow) -> OperatorMessage:

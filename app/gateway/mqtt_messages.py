@@ -7,6 +7,7 @@ from typing import Any
 
 import orjson
 
+from app.alarms.urgency import headline
 from app.gateway.outbox import recording_state
 from app.store.store import JournalEntry
 from app.tracker.memory.recording import RecordingInfo
@@ -94,7 +95,7 @@ def tracker_payload(site: SiteSnapshot, tracker: Snapshot) -> bytes:
         "mode": tracker.mode,
         "fault": None if fault is None else asdict(fault),
         "waiting": [asdict(reason) for reason in tracker.waiting],
-        "message": asdict(tracker.messages[0]) if tracker.messages else None,
+        "message": None if (first := headline(tracker)) is None else asdict(first),
     }
     return orjson.dumps(told)
 

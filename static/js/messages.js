@@ -2,13 +2,14 @@
 // it, and the card of its own page. The order and the words are the controller's; templates/_message.html says the same.
 
 import { facts } from "./facts.js";
+import { holding } from "./holding.js";
 import { clockTime, duration, shown } from "./format.js";
 import { live } from "./live.js";
 
 const says = document.getElementById("says");
 const list = document.querySelector(".says-messages");
 const card = document.getElementById("urgent");
-let known = "";
+const isHeld = holding(".message");
 
 function setText(element, text) {
   if (element && element.textContent !== text) element.textContent = text;
@@ -37,6 +38,7 @@ function fill(item, message, tracker) {
   item.dataset.code = message.code;
   item.dataset.priority = message.priority;
   for (const shape of item.querySelectorAll("[data-shape]")) shape.hidden = Number(shape.dataset.shape) !== message.priority;
+  setText(item.querySelector(".message-left"), leftOf(message, tracker));
   setText(item.querySelector(".message-title"), headOf(message));
   setText(item.querySelector(".message-text"), message.message);
   setText(item.querySelector(".message-hint"), message.hint);
@@ -48,20 +50,20 @@ function fill(item, message, tracker) {
     setText(link, leads[1]);
   }
   const form = item.querySelector("form");
-  if (!form) return;
   form.hidden = !message.calls;
   form.elements.alarm_id.value = message.alarm_id;
 }
 
-// Items are kept by what they tell, so that a button under a finger is not another one at once.
+// Items are kept by what they tell; only what has another place is moved, so that the focus stays where it is.
 function paintList(tracker) {
-  const codes = tracker.messages.map(({ code }) => code).join();
-  if (codes !== known) {
-    known = codes;
-    const before = new Map([...list.children].map((item) => [item.dataset.code, item]));
-    list.replaceChildren(...tracker.messages.map(({ code }) => before.get(code) ?? made()));
-  }
-  tracker.messages.forEach((message, place) => fill(list.children[place], message, tracker));
+  const before = new Map([...list.children].map((item) => [item.dataset.code, item]));
+  tracker.messages.forEach((message, place) => {
+    const item = before.get(message.code) ?? made();
+    before.delete(message.code);
+    if (list.children[place] !== item) list.insertBefore(item, list.children[place] ?? null);
+    fill(item, message, tracker);
+  });
+  for (const gone of before.values()) gone.remove();
 }
 
 function made() {
@@ -72,9 +74,21 @@ function made() {
 
 function paintSays(first, tracker) {
   says.dataset.code = first?.code ?? "";
-  says.dataset.priority = first?.priority ?? "";
+  says.dataset.priority = first ? Math.min(...(tracker?.messages ?? [first]).map(({ priority }) => priority)) : "";
   setText(says.querySelector(".says-first"), headOf(first, tracker));
-  if (tracker) setText(says.querySelector(".says-left"), leftOf(first, tracker));
+  if (!tracker) return;
+  setText(says.querySelector(".message-left"), leftOf(first, tracker));
+  tellAloud(tracker);
+}
+
+// What is dangerous is read aloud when it begins, and not again while only its time passes.
+let loud = "";
+function tellAloud(tracker) {
+  const urgent = tracker.messages.filter((message) => message.priority <= facts.messages.in_page || message.code === tracker.warning?.reason.code);
+  const codes = urgent.map(({ code }) => code).join();
+  if (codes === loud) return;
+  loud = codes;
+  setText(document.getElementById("says-alert"), urgent.length ? headOf(urgent[0]) : "");
 }
 
 function paint({ site, tracker }) {
@@ -82,8 +96,10 @@ function paint({ site, tracker }) {
   const [first] = tracker ? tracker.messages : site.messages;
   paintSays(first, tracker);
   if (tracker) {
-    paintList(tracker);
-    paintCard(first, tracker);
+    if (!isHeld()) {
+      paintList(tracker);
+      paintCard(tracker);
+    }
     endAnswers(tracker);
     return;
   }
@@ -100,14 +116,20 @@ function endAnswers(tracker) {
   happened = now;
 }
 
-function paintCard(first, tracker) {
+function paintCard(tracker) {
   if (!card) return;
-  card.hidden = !(first && first.priority <= facts.messages.in_page);
-  if (!card.hidden) fill(card, first, tracker);
+  const first = tracker.messages.find(({ priority }) => priority <= facts.messages.in_page);
+  card.hidden = !first;
+  if (first) fill(card, first, tracker);
+}
+
+// Without the controller nothing is acknowledged.
+function paintLink() {
+  for (const key of document.querySelectorAll(".message form button")) key.disabled = live.link !== "live";
 }
 
 export function start() {
   if (!says) return;
   live.on("state", paint);
-  if (list) known = [...list.children].map((item) => item.dataset.code).join();
+  live.on("link", paintLink);
 }

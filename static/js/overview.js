@@ -3,17 +3,21 @@
 
 import { facts } from "./facts.js";
 import { words } from "./format.js";
+import { holding } from "./holding.js";
 import { live, paint } from "./live.js";
 import { _ } from "./i18n.js";
 
+const JUST_CHANGED_MS = 700;
 const list = document.getElementById("trackers");
 const counts = document.getElementById("counts");
 const urgent = document.getElementById("site-urgent");
 const items = new Map([...list?.children ?? []].map((item) => [item.dataset.item, item]));
-const ranks = new Map(facts.states.map((word, place) => [word, place]));
+const { first: firstStates } = facts.urgency;
+const rankOf = ({ state }) => (firstStates.includes(state) ? firstStates.indexOf(state) : firstStates.length);
 let wanted = counts?.querySelector('[aria-pressed="true"]').dataset.state ?? "";
 let arranged = "";
-let pressed = false;
+let alarmed = "";
+const isHeld = holding("main", () => follow());
 
 function setText(element, text) {
   if (element && element.textContent !== text) element.textContent = text;
@@ -101,18 +105,23 @@ function choose(state) {
   history.replaceState(history.state, "", address({ state }));
   for (const key of document.querySelectorAll("[data-layout]")) key.href = address({ layout: key.dataset.layout });
   arranged = "";
-  follow();
+  paintCounts();
+  arrange(true);
 }
 
 // Where the trackers belong: most urgent first, among equals as the site has them, and which of them are shown.
-function arrange() {
+function arrange(isChosen = false) {
   const known = live.site.trackers.filter((one) => items.has(one.tracker_id));
-  const now = known.map((one) => `${priorityOf(one)}.${one.state}`).join();
-  if (now === arranged || pressed || list.contains(document.activeElement)) return;
+  const now = known.map((one) => `${priorityOf(one)}.${rankOf(one)}.${wanted ? one.state : ""}`).join();
+  const first = known.filter((one) => priorityOf(one) === 1).map((one) => one.tracker_id).join();
+  const isRead = list.contains(document.activeElement) && arranged !== "" && first === alarmed;
+  if (now === arranged || (!isChosen && (isHeld() || isRead))) return;
   arranged = now;
-  known.sort((one, other) => priorityOf(one) - priorityOf(other) || ranks.get(one.state) - ranks.get(other.state));
+  alarmed = first;
+  known.sort((one, other) => priorityOf(one) - priorityOf(other) || rankOf(one) - rankOf(other));
   const sorted = known.map((one) => items.get(one.tracker_id));
-  if (sorted.some((item, place) => item !== list.children[place])) list.prepend(...sorted);
+  // Only what has another place is moved: what has the focus keeps it.
+  sorted.forEach((item, place) => { if (list.children[place] !== item) list.insertBefore(item, list.children[place]); });
   for (const one of known) setHidden(items.get(one.tracker_id), wanted !== "" && one.state !== wanted);
   setHidden(document.getElementById("none-alike"), !wanted || known.some((one) => one.state === wanted));
 }
@@ -122,9 +131,12 @@ function paintUrgent() {
   const first = live.site.messages.find((message) => message.tracker_id);
   const one = first && first.priority <= facts.urgency.on_top ? live.trackerOf(first.tracker_id) : null;
   const isOther = (one?.tracker_id ?? "") !== urgent.dataset.tracker;
-  if (isOther && pressed) return;
+  if (isOther && isHeld()) return;
   setHidden(urgent, !one);
-  if (isOther) urgent.querySelector(".outcome").replaceChildren();
+  if (isOther) {
+    changedAt = performance.now();
+    urgent.querySelector(".outcome").replaceChildren();
+  }
   urgent.dataset.tracker = one?.tracker_id ?? "";
   if (!one) return;
   const id = one.tracker_id;
@@ -163,13 +175,29 @@ function follow() {
   arrange();
 }
 
-function release() {
-  pressed = false;
-  follow();
+// Whoever presses what has just become another tracker means the one that was there before.
+let changedAt = -JUST_CHANGED_MS;
+let aimedAt = null;
+function aim() {
+  aimedAt = performance.now() - changedAt < JUST_CHANGED_MS ? "" : urgent.dataset.tracker;
 }
 
-addEventListener("pointerdown", () => { pressed = true; });
-for (const kind of ["pointerup", "pointercancel", "dragend", "blur"]) addEventListener(kind, () => setTimeout(release));
+function refuseOther(event) {
+  if (aimedAt === null) aim();
+  const isOther = aimedAt !== urgent.dataset.tracker;
+  aimedAt = null;
+  if (!isOther || event.target.closest("#urgent-more")) return;
+  event.preventDefault();
+  event.stopImmediatePropagation();
+  const told = document.createElement("p");
+  told.className = "outcome-refused";
+  told.textContent = _("The most urgent tracker has just changed. Read which it is, then press again.");
+  urgent.querySelector(".outcome").replaceChildren(told);
+}
+
+urgent?.addEventListener("pointerdown", aim, true);
+urgent?.addEventListener("keydown", aim, true);
+urgent?.addEventListener("click", refuseOther, true);
 list?.addEventListener("focusout", () => setTimeout(follow));
 counts?.addEventListener("submit", (event) => {
   event.preventDefault();

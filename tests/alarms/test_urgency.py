@@ -9,7 +9,8 @@ from app.alarms.alarm import Alarm, Shelf
 from app.alarms.catalogue import CATALOGUE
 from app.alarms.urgency import by_urgency, messages_of, newest, site_messages, state_of, with_messages
 from app.base.message import N_
-from app.tracker.state.snapshot import Event, EventKind, Pair, Snapshot
+from app.tracker.protections.words import ServiceMode, ServiceState
+from app.tracker.state.snapshot import ActivityName, Event, EventKind, Pair, Snapshot
 from app.tracker.values.actors import CONTROLLER
 from app.tracker.values.operator_message import INFORMATION, StateWord
 from app.tracker.values.reason import Reason
@@ -44,10 +45,10 @@ def test_every_word_is_the_state_of_some_tracker() -> None:
     assert {case.word for case in CASES.values()} == set(StateWord)
 
 
-def test_what_has_priority_1_is_first_then_the_announced_motion_then_all_other_alarms() -> None:
+def test_a_motion_that_begins_is_first_then_alarms_by_priority_then_all_else() -> None:
     found = codes(tracker(CASES["not stowed, faulted, silent, local"]))
     assert found == [
-        "not_stowed", "motion_ahead", "following_error", "drive_lost", "operator_needed", "local",
+        "motion_ahead", "not_stowed", "following_error", "drive_lost", "operator_needed", "local",
     ]  # fmt: skip
 
 
@@ -78,8 +79,9 @@ def test_what_a_stop_ended_does_not_hide_who_stopped_whatever_is_told_first() ->
 
 
 def test_what_two_parts_of_a_snapshot_say_is_told_once() -> None:
-    twice = tracker(CASES["waiting"], notices=(SUN_DOWN, SUN_DOWN))
-    assert codes(twice) == ["sun_down"]
+    noted = replace(SUN_DOWN, hint=N_("Another hint."))
+    told = messages_of(tracker(CASES["waiting"], notices=(noted, noted)), {}, None)
+    assert [(one.code, one.hint) for one in told] == [("sun_down", SUN_DOWN.hint)]
 
 
 def test_a_shelved_alarm_is_not_told_and_one_that_calls_says_so() -> None:
@@ -89,8 +91,39 @@ def test_a_shelved_alarm_is_not_told_and_one_that_calls_says_so() -> None:
     assert (told.calls, told.since, told.alarm_id) == (True, AT, "following_error@T1")
     seen = replace(raised, acknowledged_at=AT)
     assert not messages_of(faulted, {raised.alarm_id: seen}, None)[0].calls
-    shelved = replace(raised, shelf=Shelf(AT, "ada", "Known."))
-    assert messages_of(faulted, {raised.alarm_id: shelved}, None) == ()
+
+
+def test_the_state_of_a_tracker_is_told_though_its_alarm_is_shelved_and_other_alarms_are_not() -> None:
+    shelf = Shelf(AT, "ada", "Known.")
+    for name, code in (
+        ("not stowed", "not_stowed"),
+        ("fault", "following_error"),
+        ("unknown fault", "fault"),
+    ):
+        shelved = Alarm(code, "T1", "A", FAULT.message, active=True, told=True, raised_at=AT, shelf=shelf)
+        told = messages_of(tracker(CASES[name]), {shelved.alarm_id: shelved}, None)
+        assert [(one.code, one.calls) for one in told] == [(code, False)]
+    poor = Alarm("link_poor", "T1", "A", FAULT.message, active=True, told=True, raised_at=AT, shelf=shelf)
+    assert messages_of(tracker(), {poor.alarm_id: poor}, None) == ()
+
+
+def test_service_mode_says_whether_the_area_is_clear() -> None:
+    for clear_s, words in ((60.0, "is confirmed clear."), (0.0, "Nothing moves until")):
+        told = messages_of(tracker(service=ServiceState(ServiceMode("ada", "ada", AT), clear_s)), {}, None)
+        assert [one.code for one in told] == ["service"]
+        assert words in f"{told[0].message} {told[0].hint}"
+        assert ("Nothing moves" in f"{told[0].message}{told[0].hint}") is (clear_s == 0.0)
+
+
+def test_a_tracker_on_local_is_told_at_its_site_whatever_else_it_tells_first() -> None:
+    local = with_messages(tracker(local=True, warning=CASES["motion announced"].fields["warning"]), {}, None)
+    assert local.messages[0].code == "motion_ahead"
+    assert [one.code for one in site_messages([local], ())] == ["local"]
+
+
+def test_every_activity_has_a_word() -> None:
+    for activity in ActivityName:
+        assert state_of(tracker(activity=activity)) in StateWord
 
 
 def test_an_alarm_ends_with_its_condition_though_it_lasts_a_little_longer_in_the_book() -> None:
@@ -108,7 +141,7 @@ def test_a_site_names_the_trackers_in_trouble_and_its_own_alarms_the_most_urgent
     assert [(one.code, one.tracker_id) for one in found] == [
         ("not_stowed", "T4"), ("following_error", "T2"), ("disk_low", None),
     ]  # fmt: skip
-    assert [one.tracker_id for one in by_urgency(told)] == ["T4", "T2", "T3", "T1"]
+    assert [one.tracker_id for one in by_urgency(told)] == ["T4", "T2", "T1", "T3"]
 
 
 def test_sixty_trackers_in_a_storm_fit_into_one_list() -> None:

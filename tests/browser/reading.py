@@ -28,6 +28,7 @@ LOUD = {
     "outdated-banner": "the page must be loaded again before an order of it counts",
     "link-banner": "values are old and movement keys are off",
     "stopped-words": "the answer to Stop",
+    "says-alert": "the machine is in danger, or is about to move",
     "urgent": "the machine does not do what it must, or is about to move",
     "summary-error": "the answer to a form that was just sent",
     "field-error": "the answer to a form that was just sent",

@@ -45,7 +45,8 @@ ALL_MESSAGES = """names => {
   for (const one of messages) one.hidden = false;
   document.querySelector(".says-first").textContent = "Drive does not answer ".repeat(9);
   document.getElementById("says").dataset.priority = "1";
-  const seen = document.getElementById("outdated-banner").checkVisibility();
+  const covered = getComputedStyle(document.getElementById("says")).visibility !== "visible";
+  const seen = document.getElementById("outdated-banner").checkVisibility() && !covered;
   const shown = boxes(names);
   document.querySelector(".messages > .pop > summary").click();
   document.getElementById("says").open = true;

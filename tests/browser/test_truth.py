@@ -8,12 +8,12 @@ from playwright.sync_api import Page, expect
 from app.base.message import N_
 from app.tracker.state.snapshot import Event, EventKind, Pair
 from app.web.languages.known import in_words
+from app.web.shell.page_facts import told_in_page
 from tests.browser.conftest import Opened, Plant, now
 from tests.every_state import AT, CASES, FAULT, StagedTracker, short_walk
 from tests.fake_data import commissioned
 
 T1 = "/trackers/T1"
-IN_PAGE = ("not_stowed", "following_error", "fault", "drive_lost")
 TOLD = """() => {
   const seen = (one) => one.checkVisibility() && one.getBoundingClientRect().top < innerHeight;
   const [says, card] = [document.getElementById("says"), document.getElementById("urgent")];
@@ -57,7 +57,8 @@ def test_a_page_follows_a_tracker_through_its_states(size: str, plant: Plant, op
         found = told(page, in_words(case.word))
         assert found["states"] == [in_words(case.word)], name
         assert found["bar"][0::2] == [case.first, True], name
-        assert found["page"] == (case.first if case.first in IN_PAGE else ""), name
+        urgent = told_in_page(plant.machine.latest().trackers[0])  # type: ignore[union-attr]
+        assert found["page"] == (urgent.code if urgent else ""), name
         assert found["listed"][:1] == [case.first][: len(found["listed"])], name
         assert bool(found["message"]) is bool(case.first), name
 
@@ -93,11 +94,15 @@ def test_an_action_that_is_off_says_why_when_it_is_pressed(plant: Plant, opened:
     form = page.locator('.slots form[action="/trackers/T1/park"]')
     why = form.locator(".reasons")
     expect(form.locator("button")).to_be_disabled()
-    expect(why).to_be_hidden()
+    expect(form).not_to_have_attribute("data-told", "")
     box = form.bounding_box()
     assert box is not None
     page.mouse.click(box["x"] + 20, box["y"] + 20)
-    expect(why).to_be_visible()
+    expect(form).to_have_attribute("data-told", "")
+    assert why.bounding_box()["width"] > 200  # type: ignore[index]
     expect(why).to_contain_text("The elevation axis does not follow.")
     page.mouse.click(300, 700)
-    expect(why).to_be_hidden()
+    expect(form).not_to_have_attribute("data-told", "")
+    assert why.bounding_box()["width"] <= 1  # type: ignore[index]
+    form.focus()
+    expect(form).to_have_attribute("data-told", "")

@@ -98,8 +98,19 @@ def test_counts_are_disjoint_and_the_order_is_by_priority_then_state(
     assert [one.state for one in counts] == list(StateWord)
     assert sum(one.number for one in counts) == len(trackers)
     assert all(one.priority == 0 for one in counts if one.state not in IN_DANGER)
-    keys = [(first(one), list(StateWord).index(one.state)) for one in by_urgency(trackers)]
+    keys = [(first(one), rank(one.state)) for one in by_urgency(trackers)]
     assert keys == sorted(keys)
+    calm = [
+        one.tracker_id for one in by_urgency(trackers) if (first(one), rank(one.state)) == (INFORMATION, 4)
+    ]
+    assert calm == [one.tracker_id for one in trackers if one.tracker_id in calm], "as the site has them"
+
+
+def rank(state: StateWord) -> int:
+    first_states = (
+        StateWord.NOT_STOWED, StateWord.FAULT, StateWord.NO_CONNECTION, StateWord.STOWING,
+    )  # fmt: skip
+    return first_states.index(state) if state in first_states else len(first_states)
 
 
 def first(one: Snapshot) -> int:

@@ -9,11 +9,10 @@ import pytest
 
 from app.access.roles import Role
 from app.base.message import N_
-from app.tracker.state.snapshot import Event, EventKind, Pair
-from app.tracker.values.operator_message import OperatorMessage
+from app.tracker.state.snapshot import Event, EventKind, Pair, Snapshot
 from app.web.languages.catalogue import catalogue_of
 from app.web.languages.known import in_words
-from app.web.shell.page_facts import IN_PAGE
+from app.web.shell.page_facts import told_in_page
 from tests.every_state import AT, CASES, OPERATOR, StagedTracker, short_walk
 from tests.fake_data import commissioned
 from tests.fakes import FakeMachine
@@ -46,30 +45,30 @@ def staged(machine: FakeMachine) -> StagedTracker:
     return machine.trackers["T1"]
 
 
-def head_of(machine: FakeMachine) -> OperatorMessage | None:
+def seen(machine: FakeMachine) -> Snapshot:
     site = machine.latest()
     assert site is not None
-    return next(iter(site.trackers[0].messages), None)
+    return site.trackers[0]
 
 
-def check(text: str, word: str, head: OperatorMessage | None, *, live: bool, language: str = "en") -> None:
+def check(text: str, word: str, tracker: Snapshot, *, live: bool, language: str = "en") -> None:
     """Fail unless a page tells the state and the most urgent message without a tap."""
     catalogue = catalogue_of(language)
+    head, urgent = next(iter(tracker.messages), None), told_in_page(tracker)
     bar = BAR.search(text)
     assert bar is not None
     words = catalogue.gettext(in_words(word))
     assert set(map(unescape, STATE.findall(text))) == {words}, "every pill and the bar tell one state"
     assert bar[1] == (head.code if head else "")
-    assert bar[2] == (str(head.priority) if head else "")
+    assert bar[2] == (str(min(one.priority for one in tracker.messages)) if head else "")
     if head is not None:
         told = head.message if head.code == word else head.title
         assert str(catalogue.said(told)) in unescape(re.sub(r"<[^>]*>", "", bar[3])), "in the bar"
     card = CARD.search(text)
     assert (card is not None) is live
     if card is not None:
-        in_page = head is not None and head.priority <= IN_PAGE
-        assert (card[2] is None) is in_page, "danger is told in the page itself"
-        assert not in_page or str(catalogue.said(head.title)) in unescape(card[3])  # type: ignore[union-attr]
+        assert (card[2] is None) is (urgent is not None), "danger is told in the page itself"
+        assert urgent is None or str(catalogue.said(urgent.title)) in unescape(card[3])
     assert '<p class="outcome-ok"' not in text, "no answer of a button contradicts the state"
 
 
@@ -81,7 +80,7 @@ async def test_every_page_tells_the_state_and_what_is_most_urgent(
         staged.case = CASES[name]
         machine.emit()
         text = (await client.get(path)).text
-        check(text, CASES[name].word, head_of(machine), live=path == T1)
+        check(text, CASES[name].word, seen(machine), live=path == T1)
 
 
 @pytest.mark.parametrize("path", OTHER_PAGES)
@@ -92,7 +91,7 @@ async def test_so_does_every_other_page_of_a_tracker(
         staged.case = CASES[name]
         machine.emit()
         text = (await client.get(T1 + path)).text
-        check(text, CASES[name].word, head_of(machine), live=False)
+        check(text, CASES[name].word, seen(machine), live=False)
 
 
 async def test_it_is_told_in_the_language_of_the_page(
@@ -102,7 +101,7 @@ async def test_it_is_told_in_the_language_of_the_page(
     for name in short_walk():
         staged.case = CASES[name]
         machine.emit()
-        check((await client.get(T1)).text, CASES[name].word, head_of(machine), live=True, language="de")
+        check((await client.get(T1)).text, CASES[name].word, seen(machine), live=True, language="de")
 
 
 async def test_who_stopped_a_tracker_is_told_on_each_of_its_pages_until_something_else_happens(

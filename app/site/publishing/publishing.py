@@ -16,7 +16,7 @@ from app.base.logs import get_logger
 from app.link.messages import Order, StopAll
 from app.link.outlet import Outlet
 from app.site.loop.loop import TrackerLoop
-from app.site.publishing.alarming import AlarmDesk
+from app.site.publishing.alarming import KINDS, AlarmDesk
 from app.site.state.model import SiteModel
 from app.sun.position import Algorithm
 from app.tracker.state.snapshot import Event, EventKind, SiteSnapshot, Snapshot
@@ -146,7 +146,7 @@ class Publisher:
         site = self._site(at)
         happened += self._alarms.judge(site, changed, at_once=bool(happened))
         self._remember(happened)
-        changed = tuple(map(self.told, changed))
+        changed = tuple(map(self.told, (*changed, *self._alarmed(happened, changed))))
         self._trackers |= {one.tracker_id: one for one in changed}
         alarms, counts = self._alarms.shown(at)
         trackers = tuple(filter(None, self._trackers.values()))
@@ -169,6 +169,15 @@ class Publisher:
                 self._told.pop(tracker_id, None)
                 self._told[tracker_id] = now
                 yield self._model.snapshot(loop, at, asked=tracker_id in self._watched)
+
+    def _alarmed(self, events: Iterable[Event], told: Iterable[Snapshot]) -> Iterable[Snapshot]:
+        """Yield the trackers that are not told now and whose alarms changed: their messages have, too."""
+        known = {snapshot.tracker_id for snapshot in told}
+        named = (event.tracker_id for event in events if event.kind in KINDS.values())
+        for tracker_id in dict.fromkeys(named):
+            snapshot = None if tracker_id in known else self._trackers.get(tracker_id or "")
+            if snapshot is not None:
+                yield snapshot
 
     def _remember(self, events: Iterable[Event]) -> None:
         """Note the last thing that happened to each tracker."""

@@ -7,6 +7,7 @@ from typing import Any
 
 import orjson
 
+from app.alarms.urgency import headline
 from app.base.clock import Clock
 from app.link.messages import Update
 from app.tracker.state.snapshot import SiteSnapshot, Snapshot
@@ -122,9 +123,15 @@ class States:
         key, texts = (wanted.language, asked), self._texts[tracker_id]
         if key not in texts:
             tracker = self._trackers[tracker_id]
-            shown = tracker if asked else replace(tracker, actions={}, messages=tracker.messages[:1])
+            shown = tracker if asked else _in_short(tracker)
             texts[key] = orjson.Fragment(in_language(catalogue_of(wanted.language), shown))
         return texts[key]
+
+
+def _in_short(tracker: Snapshot) -> Snapshot:
+    """Return a tracker as those are told who look at all of them."""
+    first = headline(tracker)
+    return replace(tracker, actions={}, messages=() if first is None else (first,))
 
 
 def _told_at_once(site: SiteSnapshot | None) -> object:

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 from typing import Any, ClassVar, Protocol
 
+from app.alarms.urgency import IN_DANGER
 from app.base.message import Message
 from app.sun.algorithms import PUBLISHED
 from app.tracker.commands.control import ControlState
@@ -17,7 +18,7 @@ from app.tracker.values.operator_message import StateWord
 from app.tracker.values.reason import Reason
 from app.web.charts.drawings import Scene, SunDiagram
 from app.web.shell.control_role import Standing, standing
-from app.web.shell.glances import IN_DANGER, Count, Glance, Urgent
+from app.web.shell.glances import Count, Glance, Urgent
 from app.web.shell.who import Who
 
 ALGORITHMS = tuple((algorithm.value, one.expected) for algorithm, one in PUBLISHED.items())

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from app.alarms.urgency import first_priority
+from app.alarms.urgency import IN_DANGER, first_priority, headline
 from app.base.message import NOTHING, Message, Word, say, word
 from app.tracker.protections.words import Protection
 from app.tracker.settings.config import MountKind, TrackerConfig
@@ -32,8 +32,6 @@ LOOKS = {
     StateWord.SERVICE_MODE: "manual",
 }
 """How the tile of a tracker looks whose state is not its normal day; tiles.js is told the same."""
-IN_DANGER = (StateWord.NOT_STOWED, StateWord.FAULT, StateWord.NO_CONNECTION)
-"""The states whose count has the color of their most urgent alarm."""
 TOLD_ON_TOP = 2
 """The least urgent priority of which the overview tells its most urgent tracker above all others."""
 
@@ -158,9 +156,9 @@ def _color(priority: int) -> int:
 
 def _trouble(one: Snapshot) -> Message:
     """Return the first thing to know about a tracker; what its state says already is told with its cause."""
-    if not one.messages:
+    first = headline(one)
+    if first is None:
         return NOTHING
-    first = one.messages[0]
     return first.message if first.code == one.state and first.message else first.title
 
 

@@ -6,17 +6,18 @@ import orjson
 from markupsafe import Markup
 
 from app.alarms.catalogue import ANY_FAULT
+from app.alarms.urgency import FIRST_STATES, IN_DANGER, headline
 from app.base.message import N_
 from app.tracker.state.snapshot import ActivityName, ShowPhase, Snapshot
 from app.tracker.values.alarm_words import CALLING, QUIET, AlarmState
-from app.tracker.values.operator_message import INFORMATION, OperatorMessage, StateWord
+from app.tracker.values.operator_message import INFORMATION, OperatorMessage
 from app.web.charts.axis import ANGLE_STEPS_DEG, NUMBER_STEPS, TIME_STEPS_S
 from app.web.charts.drawings import HORIZON, SET_DEG
 from app.web.languages.catalogue import catalogue_of
 from app.web.live.hold_to_run import LATEST_HEARTBEAT
 from app.web.live.live_protocol import FLOODED
 from app.web.shell.formats import MEASURES, NAMELESS
-from app.web.shell.glances import BAR, IN_DANGER, LOOKS, TOLD_ON_TOP
+from app.web.shell.glances import BAR, LOOKS, TOLD_ON_TOP
 from app.web.shell.theme import A_YEAR_S
 from app.web.shell.themes import CHOICES, GLARE_ABOVE_DEG, NIGHT_BELOW_DEG
 
@@ -53,9 +54,10 @@ def message_link(message: OperatorMessage, tracker: Snapshot) -> tuple[str, str]
     return FAULT_LINK if is_fault else MESSAGE_LINKS.get(message.code)
 
 
-def is_in_page(message: OperatorMessage | None) -> bool:
-    """Return whether a tracker's own page tells its most urgent message in the page."""
-    return message is not None and message.priority <= IN_PAGE
+def told_in_page(tracker: Snapshot | None) -> OperatorMessage | None:
+    """Return the message that a tracker's own page tells in the page, None where nothing is so urgent."""
+    first = None if tracker is None else headline(tracker)
+    return first if first is not None and first.priority <= IN_PAGE else None
 
 
 @cache
@@ -83,8 +85,12 @@ def page_facts(code: str) -> Markup:
         "flooded": FLOODED,
         "bar": BAR,
         "looks": {name.value: one for name, one in LOOKS.items()},
-        "states": list(StateWord),
-        "urgency": {"in_danger": IN_DANGER, "on_top": TOLD_ON_TOP, "information": INFORMATION},
+        "urgency": {
+            "in_danger": IN_DANGER,
+            "first": FIRST_STATES,
+            "on_top": TOLD_ON_TOP,
+            "information": INFORMATION,
+        },
         "messages": {code: (end, catalogue.said(label)) for code, (end, label) in MESSAGE_LINKS.items()}
         | {"in_page": IN_PAGE},
         "sky": {"radius": HORIZON, "set_deg": SET_DEG},

@@ -13,6 +13,7 @@ from markupsafe import Markup
 from starlette.requests import Request
 from starlette.responses import HTMLResponse, RedirectResponse, Response
 
+from app.alarms.urgency import headline
 from app.base.build import VERSION
 from app.base.own import own_folder
 from app.tracker.mounts.capabilities import abilities
@@ -25,7 +26,7 @@ from app.web.shell.contexts import Context
 from app.web.shell.deps import panel, principal
 from app.web.shell.help import help_for
 from app.web.shell.one_space import OneSpace
-from app.web.shell.page_facts import is_in_page, message_link, page_facts
+from app.web.shell.page_facts import message_link, page_facts, told_in_page
 
 
 def options_said(options: Iterable[tuple[object, str]]) -> tuple[tuple[object, str], ...]:
@@ -84,7 +85,8 @@ def environment() -> Environment:
         "page_facts": page_facts,
         "version": VERSION,
         "message_link": message_link,
-        "is_in_page": is_in_page,
+        "told_in_page": told_in_page,
+        "headline": headline,
     }
     for shared in (
         "_icons.html",
