@@ -29,10 +29,12 @@ def test_only_a_second_60_is_clamped(text: str, taken: str) -> None:
 async def test_the_api_and_the_pages_take_a_leap_second_as_the_second_before(
     machine: FakeMachine, client: httpx.AsyncClient, fault: FaultResult
 ) -> None:
+    machine.rest()
     asked = {"source": "manual", "at": "2026-12-31T23:59:60Z", "confirmed": True}
+    device = {"at": "2026-12-31T23:59:60Z", "confirmed": "yes"}
     assert (await client.put("/api/v1/site/clock", json=asked)).status_code == 200
-    assert (await client.post(f"{CLOCK}/device", data={"at": "2026-12-31T23:59:60Z"})).status_code == 303
-    typed = {"date": "2026-12-31", "time": "23:59:60", "time_zone": "UTC"}
+    assert (await client.post(f"{CLOCK}/device", data=device)).status_code == 303
+    typed = {"date": "2026-12-31", "time": "23:59:60", "time_zone": "UTC", "confirmed": "yes"}
     assert (await client.post(CLOCK, data=typed)).status_code == 303
     told = [order.command for order in machine.orders]
     assert [one.at.isoformat() for one in told if isinstance(one, SetClock) and one.at is not None] == [

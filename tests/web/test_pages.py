@@ -75,10 +75,11 @@ async def test_location_is_saved_and_leads_on(machine: FakeMachine, client: http
 
 
 async def test_clock_is_kept_copied_or_typed(machine: FakeMachine, client: httpx.AsyncClient) -> None:
-    root = f"{T1}/commissioning/clock"
+    root, sure = f"{T1}/commissioning/clock", {"confirmed": "yes"}
+    machine.rest()
     await client.post(f"{root}/system")
-    await client.post(f"{root}/device", data={"at": "2026-06-21T09:00:00.000Z"})
-    typed = {"date": "2026-06-21", "time": "12:00:30", "time_zone": "Europe/Istanbul"}
+    await client.post(f"{root}/device", data={"at": "2026-06-21T09:00:00.000Z"} | sure)
+    typed = {"date": "2026-06-21", "time": "12:00:30", "time_zone": "Europe/Istanbul"} | sure
     await client.post(root, data=typed)
     system, device, manual = sent(machine, SetClock)
     assert (system.source, system.at) == ("system", None)

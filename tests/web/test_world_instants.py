@@ -46,9 +46,10 @@ async def test_no_clock_is_set_to_an_instant_that_is_refused(
     row: dict[str, str], machine: FakeMachine, client: httpx.AsyncClient
 ) -> None:
     taken = row["taken"] == "yes"
+    machine.rest()
     asked = {"source": "manual", "at": row["text"], "confirmed": True}
     by_api = await client.put("/api/v1/site/clock", json=asked)
-    by_device = await client.post(f"{CLOCK}/device", data={"at": row["text"]})
+    by_device = await client.post(f"{CLOCK}/device", data={"at": row["text"], "confirmed": "yes"})
     assert (by_api.status_code, by_device.status_code) == ((200, 303) if taken else (422, 422))
     orders = [order for order in machine.orders if isinstance(order.command, SetClock)]
     assert len(orders) == (2 if taken else 0)
@@ -59,9 +60,11 @@ async def test_no_clock_is_set_to_an_instant_that_is_refused(
     [("1900-12-31", "Etc/GMT+12"), ("2100-01-01", "Pacific/Kiritimati"), ("2099-12-31", "UTC")],
 )
 async def test_a_typed_day_outside_the_years_of_the_sun_is_refused_at_its_field(
-    day: str, zone: str, client: httpx.AsyncClient
+    day: str, zone: str, machine: FakeMachine, client: httpx.AsyncClient
 ) -> None:
-    answer = await client.post(CLOCK, data={"date": day, "time": "12:00:00", "time_zone": zone})
+    machine.rest()
+    typed = {"date": day, "time": "12:00:00", "time_zone": zone, "confirmed": "yes"}
+    answer = await client.post(CLOCK, data=typed)
     assert answer.status_code == (303 if day == "2099-12-31" else 422), answer.text
     assert day == "2099-12-31" or REFUSED in answer.text
 
