@@ -106,7 +106,9 @@ KINDS = {
 @pytest.mark.parametrize("kind", KINDS)
 def test_no_error_takes_the_place_of_anything(kind: str, opened: Opened, plant: Plant) -> None:
     """Everything on the page that asks gets an error, of all in turn."""
-    plant.machine.alarms = (alarm("drive_lost", plant.machine.clock.now()),)
+    at_now = plant.machine.clock.now()
+    plant.machine.alarms = (alarm("drive_lost", at_now), alarm("link_poor", at_now))
+    plant.do(plant.machine.emit)
     page = opened(KINDS[kind], allow=NOISE)
     now: list[Reply | None] = [None]
     answer(page, now)

@@ -1,5 +1,6 @@
 """What the homing page says of the home position and of the drive is so, and ends when it ends."""
 
+import re
 from collections.abc import Iterator
 
 import pytest
@@ -14,7 +15,6 @@ from tests.browser.test_set_home import COARSE_MS, COUNTS_MS, SET, UNDO
 
 HOMING = "/trackers/T1/commissioning/homing"
 SEARCH = 'form[action$="/home"] button'
-RESTORED = "The previous home position is restored."
 SEARCHING = "The drive is searching for its home switches."
 UNFINISHED = "not finished"
 KEY = '[data-jog="azimuth"][data-direction="1"]'
@@ -30,38 +30,39 @@ def site(browser: Browser) -> Iterator[SiteStage]:
         yield found
 
 
-def answers(page: Page) -> list[str]:
-    return [text.strip() for text in page.locator(".homing .outcome-ok:visible").all_inner_texts()]
+def word(page: Page) -> str:
+    return page.locator(".says-state").inner_text()
 
 
 def search(site: SiteStage, page: Page) -> None:
     """Search the home switches; while it runs, it is said, and nothing else of the home position."""
     site.until(page.locator(SEARCH).is_enabled)
     page.locator(SEARCH).click()
-    site.until(lambda: answers(page) == [SEARCHING])
-    site.until(lambda: site.tracker.activity is ActivityName.HOMING)
+    site.until(lambda: word(page) == "Homing")
     site.advance(1000)
-    assert answers(page) == [SEARCHING]
     assert UNFINISHED not in page.locator("body").inner_text()
     site.until(lambda: site.tracker.homed, within_ms=LONG_MS)
-    site.until(lambda: answers(page) == [])
+    site.until(lambda: word(page) == "At standstill")
 
 
 def test_after_an_undo_and_a_search_only_what_is_so_is_said(site: SiteStage) -> None:
     page = site.open(HOMING, "tablet", allow=("422",))
+    happened = page.locator(".says-messages .message[data-code^=hom]")
     search(site, page)
     Mouse(page, site.advance).hold(page.locator(SET), COUNTS_MS + COARSE_MS)
     site.until(lambda: site.tracker.can_undo_home)
     site.until(page.locator(UNDO).is_enabled)
     page.locator(UNDO).click()
-    site.until(lambda: answers(page) == [RESTORED])
+    site.until(page.locator('.message[data-code="home_position_undone"]').count)
     site.beat_ms = BEAT_MS
     Mouse(page, site.advance).hold(page.locator(KEY), AWAY_MS)
     site.until(lambda: site.tracker.activity is ActivityName.HOLDING)
     site.beat_ms = COARSE_MS
-    assert answers(page) == [RESTORED]
+    site.until(lambda: happened.count() == 0)
     search(site, page)
-    assert RESTORED not in page.locator("body").inner_text()
+    codes = happened.evaluate_all("all => all.map((one) => one.dataset.code)")
+    assert codes == ["homing_ended"], "the last thing that happened, and nothing before it"
+    assert page.locator(".homing .outcome-ok").count() == 0
 
 
 def test_service_says_that_the_search_runs_and_then_that_it_was_not_finished(site: SiteStage) -> None:
@@ -75,19 +76,21 @@ def test_service_says_that_the_search_runs_and_then_that_it_was_not_finished(sit
     assert SEARCHING not in zero.inner_text()
 
 
-def test_of_a_silent_drive_is_said_that_it_does_not_answer_and_for_how_long(site: SiteStage) -> None:
+def test_of_a_silent_drive_is_said_that_it_does_not_answer_and_since_when(site: SiteStage) -> None:
     page = site.open(HOMING, "tablet")
     pill = page.locator(".jog-state .chip:visible")
-    site.until(lambda: pill.inner_text() == "Holding")
+    site.until(lambda: pill.inner_text() == "Not homed")
     site.do(lambda: site.served.drives["T1"].inject(Fault(FaultKind.SILENCE)))
     site.until(lambda: site.tracker.unreachable is not None)
     page.locator("#stop-key").click()
     site.advance(77_000)
     assert site.tracker.activity is ActivityName.STOPPING
-    assert pill.inner_text().startswith("No connection to the drive for 1 min 1")
-    assert page.locator(".strip-activity").text_content() == "No connection to the drive"
+    assert pill.inner_text() == word(page) == "No connection"
+    first = page.locator(".says-first").inner_text()
+    assert re.fullmatch(r"Drive does not answer · \d\d:\d\d:\d\d", first)
+    assert page.locator(".says-text").text_content() == "No connection to the drive"
     said = page.locator("main").inner_text()
     assert "The drive of Tracker 1 does not answer." in said
     assert "standstill" not in said
     site.do(site.served.drives["T1"].end_injected_faults)
-    site.until(lambda: pill.inner_text() == "Holding")
+    site.until(lambda: pill.inner_text() == "Not homed")
