@@ -178,12 +178,13 @@ function follow() {
 // Whoever presses what has just become another tracker means the one that was there before.
 let changedAt = -JUST_CHANGED_MS;
 let aimedAt = null;
-function aim() {
-  aimedAt = performance.now() - changedAt < JUST_CHANGED_MS ? "" : urgent.dataset.tracker;
+function aim({ target }) {
+  if (urgent?.contains(target)) aimedAt = performance.now() - changedAt < JUST_CHANGED_MS ? "" : urgent.dataset.tracker;
 }
 
 function refuseOther(event) {
-  if (aimedAt === null) aim();
+  if (!urgent?.contains(event.target)) return;
+  if (aimedAt === null) aim(event);
   const isOther = aimedAt !== urgent.dataset.tracker;
   aimedAt = null;
   if (!isOther || event.target.closest("#urgent-more")) return;
@@ -195,9 +196,9 @@ function refuseOther(event) {
   urgent.querySelector(".outcome").replaceChildren(told);
 }
 
-urgent?.addEventListener("pointerdown", aim, true);
-urgent?.addEventListener("keydown", aim, true);
-urgent?.addEventListener("click", refuseOther, true);
+addEventListener("pointerdown", aim, true);
+addEventListener("keydown", aim, true);
+addEventListener("click", refuseOther, true);
 list?.addEventListener("focusout", () => setTimeout(follow));
 counts?.addEventListener("submit", (event) => {
   event.preventDefault();

@@ -7,10 +7,18 @@ function told(form) {
   if (form) form.dataset.told = "";
 }
 
+const off = "button:disabled, fieldset:disabled";
+
+// The form of an action that is off, around what was pressed or has the focus.
+function offAround(target) {
+  const form = target.closest?.(".slot .action");
+  return form?.querySelector(off) ? form : null;
+}
+
 // Who has no pointer comes to the form of a button that is off, and is told there.
 function reach() {
   for (const form of document.querySelectorAll(".slot .action")) {
-    if (form.querySelector("button:disabled, fieldset:disabled")) form.tabIndex = 0;
+    if (form.querySelector(off)) form.tabIndex = 0;
     else form.removeAttribute("tabindex");
   }
 }
@@ -19,11 +27,11 @@ function reach() {
 export function start() {
   if (!document.querySelector(".slot")) return;
   for (const kind of ["state", "link"]) live.on(kind, reach);
-  addEventListener("focusin", ({ target }) => { if (target.matches(".slot .action")) told(target); });
+  addEventListener("focusin", ({ target }) => told(offAround(target)));
   addEventListener("pointerdown", ({ target }) => {
-    const form = target.closest?.(".slot .action");
-    told(form?.querySelector("button:disabled, fieldset:disabled") ? form : null);
+    told(offAround(target));
     if (target.closest?.(".outcome")) return;
+    const form = target.closest?.(".slot .action");
     for (const outcome of document.querySelectorAll(".slot .outcome")) if (!form?.contains(outcome)) outcome.replaceChildren();
   });
 }

@@ -193,7 +193,7 @@ async def test_a_cut_cable_leaves_a_drive_that_stops_itself_and_nothing_resumes(
     await move_far(service, drive)
     cable.freeze()
     await drive.rests()
-    await service.until(lambda seen: "No communication" in seen.activity_text)
+    await service.until(lambda seen: "No connection" in seen.activity_text)
     seen = service.tracker()
     assert seen is not None
     fault.shows(seen.activity_text)

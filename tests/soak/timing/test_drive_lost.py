@@ -48,7 +48,7 @@ def turn_away(calling: Integrator) -> None:
 def lost(calling: Integrator, words: str) -> dict[str, Any]:
     """Return the tracker once it says that there is no contact, and why."""
     seen = calling.until(
-        lambda seen: "No communication" in seen["activity_text"] and words in told(seen),
+        lambda seen: "No connection" in seen["activity_text"] and words in told(seen),
         f"the page says: {words}",
         within_s=15.0,
     )
