@@ -25,7 +25,7 @@ from app.tracker.state.snapshot import Pair
 from tests.browser.conftest import BEAT, Plant, Served, go, listen, now, running
 from tests.fake_data import NOON
 from tests.fakes import FakeMachine
-from tests.patience import PATIENCE_MS
+from tests.patience import PATIENCE_MS, until
 
 T1 = "/trackers/T1"
 FRAME_MS = 16
@@ -184,6 +184,11 @@ def share(page: Page, colour: tuple[int, int, int]) -> float:
     return float(page.evaluate(COUNT, [base64.b64encode(shot).decode(), list(colour)]))
 
 
+def sees_cells(page: Page) -> None:
+    """Wait for the panel's cells: what a worker has painted comes to the screen a frame or two later."""
+    until(lambda: share(page, CELL) > 0.02, "the panel's cells are on the screen")
+
+
 def frames(page: Page) -> int:
     return int(page.locator(".scene").get_attribute("data-frames") or 0)
 
@@ -237,7 +242,7 @@ def separation(normal: list[float], azimuth_deg: float, elevation_deg: float) ->
 
 
 def test_it_is_painted_by_webgl_and_only_when_something_changes(panel: Panel, live: Page) -> None:
-    assert share(live, CELL) > 0.02, "the panel's cells are on the screen"
+    sees_cells(live)
     before = asked(live)
     live.clock.run_for(1_000)
     assert turned(panel, live, 180.01, 45.0) == 0, "nobody sees a hundredth of a degree"
@@ -303,7 +308,7 @@ def test_without_webgl_the_same_scene_is_drawn(panel: Panel) -> None:
     page.route("**/view3d/worker.js", lambda route: begin_with(NO_WEBGL, route))
     panel.open(T1, page)
     settled(page, "drawn")
-    assert share(page, CELL) > 0.02
+    sees_cells(page)
     context.close()
 
 
@@ -317,10 +322,10 @@ def test_a_lost_context_is_bridged_and_taken_back(panel: Panel) -> None:
         "self.loser = self.lastContext.getExtension('WEBGL_lose_context'); self.loser.loseContext()"
     )
     settled(page, "drawn")
-    assert share(page, CELL) > 0.02
+    sees_cells(page)
     painting.evaluate("self.loser.restoreContext()")
     settled(page)
-    assert share(page, CELL) > 0.02
+    sees_cells(page)
 
 
 def test_a_recording_from_before_limits_were_kept_plays_in_the_picture(panel: Panel) -> None:
