@@ -120,11 +120,12 @@ def messages_of(
 
     `alarms` are those of the tracker by `alarm_id`: one that was shelved, or is suppressed, is not told,
     unless it is the tracker's own state. A motion that is announced is first, since it begins within seconds;
-    a stop by somebody comes before what is waited for.
+    a stop by somebody comes before what is waited for, and before alarms that were there when it was pressed,
+    but for those of priority 1.
     """
     urgent = sorted(_alarms(tracker, alarms), key=attrgetter("priority"))
     found: dict[str, OperatorMessage] = {}
-    for one in (*_announced(tracker), *urgent, *_information(tracker, last)):
+    for one in (*_announced(tracker), *_with_stop(urgent, last), *_information(tracker, last)):
         found.setdefault(one.code, one)
     return tuple(found.values())
 
@@ -167,6 +168,14 @@ def _condition(alarm: Alarm) -> Condition:
     return Condition(alarm.code, alarm.tracker_id, alarm.where, alarm.message, alarm.hint)
 
 
+def _with_stop(urgent: list[OperatorMessage], last: Event | None) -> list[OperatorMessage]:
+    """Return alarms with a stop by somebody before those that it found there, but for those of priority 1."""
+    if last is None or not _is_by_somebody(last):
+        return urgent
+    ahead = [one for one in urgent if one.priority == 1 or one.since is None or one.since > last.at]
+    return [*ahead, _happened(last), *(one for one in urgent if one not in ahead)]
+
+
 def _announced(tracker: Snapshot) -> Iterator[OperatorMessage]:
     if tracker.warning is not None:
         yield _of(tracker.warning.reason)
@@ -207,8 +216,12 @@ def _service(service: ServiceState) -> OperatorMessage:
     )
 
 
+def _is_by_somebody(event: Event) -> bool:
+    return event.kind is EventKind.STOPPED and event.actor != CONTROLLER
+
+
 def _happened(event: Event) -> OperatorMessage:
-    if event.kind is EventKind.STOPPED and event.actor != CONTROLLER:
+    if _is_by_somebody(event):
         title, by = say("Stopped by {who}", who=_name(event.actor)), ""
     else:
         title, by = event.message, "" if event.actor == CONTROLLER else event.actor
@@ -237,7 +250,7 @@ def by_urgency(trackers: Iterable[Snapshot]) -> list[Snapshot]:
 
 def headline(tracker: Snapshot) -> OperatorMessage | None:
     """Return the most urgent message of a tracker: of its alarms, if any; else what it tells first."""
-    return min(tracker.messages[:2], key=attrgetter("priority"), default=None)
+    return min(tracker.messages, key=attrgetter("priority"), default=None)
 
 
 def first_priority(tracker: Snapshot) -> int:

@@ -108,7 +108,7 @@ def _now(alarm: Alarm, at: datetime, now: datetime, *, flood: bool) -> AlarmNow:
         priority=entry.priority,
         title=entry.title,
         message=alarm.message,
-        do=entry.do,
+        do=alarm.hint or entry.do,
         state=alarm.state,
         since=alarm.raised_at or at,
         returned_at=alarm.returned_at,

@@ -15,9 +15,6 @@ const TONE_S = 0.18;
 const calls = (alarm) => facts.alarms.calling.includes(alarm.state);
 const one = (id) => document.getElementById(id);
 
-// The title of an alarm; one that waits to be seen though its cause is gone does not read as if it stood.
-export const headingOf = (alarm) => (alarm.state === facts.alarms.returned ? _("Returned to normal: {title}", { title: alarm.title }) : alarm.title);
-
 // Without the machine nothing is known: what was shown last is no longer the truth.
 function paintUnknown() {
   const unknown = live.link !== "live" && live.link !== "starting";

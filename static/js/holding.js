@@ -7,7 +7,7 @@ const CLICKS_WITHIN_MS = 500;
 export function holding(selector, after = () => {}) {
   const pressed = new Set();
   let until = 0;
-  addEventListener("pointerdown", ({ pointerId, target }) => { if (target.closest?.(selector)) pressed.add(pointerId); }, true);
+  addEventListener("pointerdown", ({ pointerId, target, button }) => { if (!button && target.closest?.(selector)) pressed.add(pointerId); }, true);
   const release = ({ pointerId }) => {
     if (!pressed.delete(pointerId)) return;
     until = performance.now() + CLICKS_WITHIN_MS;

@@ -1,9 +1,11 @@
 // What the controller tells first: the state in the bar with the most urgent message, all messages of the tracker behind
 // it, and the card of its own page. The order and the words are the controller's; templates/_message.html says the same.
 
+import { onlyAsRead } from "./as_read.js";
 import { facts } from "./facts.js";
 import { holding } from "./holding.js";
 import { clockTime, duration, shown } from "./format.js";
+import { _ } from "./i18n.js";
 import { live } from "./live.js";
 
 const says = document.getElementById("says");
@@ -21,11 +23,18 @@ function leftOf(message, tracker) {
   return warning && message?.code === warning.reason.code ? duration(Math.ceil(warning.remaining_s)) : "";
 }
 
+// When an event was; since when what is so now.
+function timeOf({ priority, since }) {
+  if (!since) return "";
+  const time = clockTime(since, live.zone);
+  return priority < facts.urgency.information ? _("since {time}", { time }) : time;
+}
+
 // What the state in the bar says already is not said again below it.
 function headOf(message, tracker) {
   if (!message) return "";
   const where = message.where ? `${message.tracker_id} ${message.where}: ` : "";
-  const of = [message.by && shown(message.by, "who"), message.since && clockTime(message.since, live.zone)].filter(Boolean);
+  const of = [message.by && shown(message.by, "who"), timeOf(message)].filter(Boolean);
   return `${where}${message.code === tracker?.state ? message.message : message.title}${of.length ? ` · ${of.join(", ")}` : ""}`;
 }
 
@@ -72,10 +81,15 @@ function made() {
   return item;
 }
 
+// Below the state stands the first message, or the stop behind one that the state says; told_in_bar says the same.
+function lineOf([first, second], tracker) {
+  return first?.code === tracker.state && second?.code === "stopped" ? second : first;
+}
+
 function paintSays(first, tracker) {
   says.dataset.code = first?.code ?? "";
   says.dataset.priority = first ? Math.min(...(tracker?.messages ?? [first]).map(({ priority }) => priority)) : "";
-  setText(says.querySelector(".says-first"), headOf(first, tracker));
+  setText(says.querySelector(".says-first"), headOf(tracker ? lineOf(tracker.messages, tracker) : first, tracker));
   if (!tracker) return;
   setText(says.querySelector(".message-left"), leftOf(first, tracker));
   tellAloud(tracker);
@@ -120,6 +134,8 @@ function paintCard(tracker) {
   if (!card) return;
   const first = tracker.messages.find(({ priority }) => priority <= facts.messages.in_page);
   card.hidden = !first;
+  // Nobody acknowledges by Enter what came under the focus.
+  if (card.dataset.code !== first?.code && card.contains(document.activeElement)) document.activeElement.blur();
   if (first) fill(card, first, tracker);
 }
 
@@ -130,6 +146,8 @@ function paintLink() {
 
 export function start() {
   if (!says) return;
+  if (card) onlyAsRead(card, () => card.dataset.code);
+  if (list) onlyAsRead(list.parentElement, () => [...list.children].map((item) => item.dataset.code).join());
   live.on("state", paint);
   live.on("link", paintLink);
 }

@@ -1,13 +1,13 @@
 // The overview: the most urgent tracker above all, how many are in each state, and all of them in the order of urgency,
 // or those in one state. Nothing moves under a finger: what changes the list waits until it is let go.
 
+import { onlyAsRead } from "./as_read.js";
 import { facts } from "./facts.js";
 import { words } from "./format.js";
 import { holding } from "./holding.js";
 import { live, paint } from "./live.js";
 import { _ } from "./i18n.js";
 
-const JUST_CHANGED_MS = 700;
 const list = document.getElementById("trackers");
 const counts = document.getElementById("counts");
 const urgent = document.getElementById("site-urgent");
@@ -46,7 +46,7 @@ function paintBar(svg, one) {
   }
 }
 
-const priorityOf = (one) => one.messages[0]?.priority ?? facts.urgency.information;
+const priorityOf = (one) => Math.min(...one.messages.map(({ priority }) => priority), facts.urgency.information);
 
 // The color of a tracker: the priority of its most urgent alarm, 0 without any.
 export const colorOf = (one) => (priorityOf(one) < facts.urgency.information ? priorityOf(one) : 0);
@@ -133,10 +133,7 @@ function paintUrgent() {
   const isOther = (one?.tracker_id ?? "") !== urgent.dataset.tracker;
   if (isOther && isHeld()) return;
   setHidden(urgent, !one);
-  if (isOther) {
-    changedAt = performance.now();
-    urgent.querySelector(".outcome").replaceChildren();
-  }
+  if (isOther) urgent.querySelector(".outcome").replaceChildren();
   urgent.dataset.tracker = one?.tracker_id ?? "";
   if (!one) return;
   const id = one.tracker_id;
@@ -172,33 +169,12 @@ function follow() {
   paintUrgent();
   if (!counts) return;
   paintCounts();
+  look();
   arrange();
 }
 
-// Whoever presses what has just become another tracker means the one that was there before.
-let changedAt = -JUST_CHANGED_MS;
-let aimedAt = null;
-function aim({ target }) {
-  if (urgent?.contains(target)) aimedAt = performance.now() - changedAt < JUST_CHANGED_MS ? "" : urgent.dataset.tracker;
-}
-
-function refuseOther(event) {
-  if (!urgent?.contains(event.target)) return;
-  if (aimedAt === null) aim(event);
-  const isOther = aimedAt !== urgent.dataset.tracker;
-  aimedAt = null;
-  if (!isOther || event.target.closest("#urgent-more")) return;
-  event.preventDefault();
-  event.stopImmediatePropagation();
-  const told = document.createElement("p");
-  told.className = "outcome-refused";
-  told.textContent = _("The most urgent tracker has just changed. Read which it is, then press again.");
-  urgent.querySelector(".outcome").replaceChildren(told);
-}
-
-addEventListener("pointerdown", aim, true);
-addEventListener("keydown", aim, true);
-addEventListener("click", refuseOther, true);
+// Whoever presses what has just become another tracker, or has just moved, means what was there before.
+const look = urgent && onlyAsRead(urgent, () => `${urgent.dataset.tracker} ${urgent.offsetTop}`, (target) => target.closest("#urgent-more"));
 list?.addEventListener("focusout", () => setTimeout(follow));
 counts?.addEventListener("submit", (event) => {
   event.preventDefault();

@@ -1,5 +1,6 @@
-// The actions in the frame's slots: one that cannot work says why beside it when it is pressed, until something else is.
+// The actions in the frame's slots, and the keys to hold: what cannot work says why when pressed, until something else is.
 
+import { onlyAsRead } from "./as_read.js";
 import { live } from "./live.js";
 
 function told(form) {
@@ -9,9 +10,9 @@ function told(form) {
 
 const off = "button:disabled, fieldset:disabled";
 
-// The form of an action that is off, around what was pressed or has the focus.
+// The form of an action that is off, or the panel of keys that are, around what was pressed or has the focus.
 function offAround(target) {
-  const form = target.closest?.(".slot .action");
+  const form = target.closest?.(".slot .action, .jog-panel:has(> .reasons:not(:empty))");
   return form?.querySelector(off) ? form : null;
 }
 
@@ -23,9 +24,16 @@ function reach() {
   }
 }
 
+// Which actions a slot has now; Start tracking and End tracking share one.
+function actionsOf(slot) {
+  const forms = [...slot.querySelectorAll("form.action:not([hidden])")];
+  return forms.map((form) => `${form.getAttribute("action")} ${form.elements.position?.value ?? ""}`).join();
+}
+
 // A press on a button that is off reaches its form.
 export function start() {
-  if (!document.querySelector(".slot")) return;
+  if (!document.querySelector(".slot, .jog-panel")) return;
+  for (const slot of document.querySelectorAll(".slot:has(form.action + form.action)")) onlyAsRead(slot, () => actionsOf(slot));
   for (const kind of ["state", "link"]) live.on(kind, reach);
   addEventListener("focusin", ({ target }) => told(offAround(target)));
   addEventListener("pointerdown", ({ target }) => {

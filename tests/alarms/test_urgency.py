@@ -7,7 +7,15 @@ import pytest
 
 from app.alarms.alarm import Alarm, Shelf
 from app.alarms.catalogue import CATALOGUE
-from app.alarms.urgency import by_urgency, messages_of, newest, site_messages, state_of, with_messages
+from app.alarms.urgency import (
+    by_urgency,
+    headline,
+    messages_of,
+    newest,
+    site_messages,
+    state_of,
+    with_messages,
+)
 from app.base.message import N_
 from app.tracker.protections.words import ServiceMode, ServiceState
 from app.tracker.state.snapshot import ActivityName, Event, EventKind, Pair, Snapshot
@@ -57,6 +65,25 @@ def test_a_stop_is_told_with_who_pressed_it_before_what_is_waited_for() -> None:
     first = messages_of(waiting, {}, event(EventKind.STOPPED, "vic"))[0]
     assert (first.code, str(first.title), first.since) == ("stopped", "Stopped by vic", AT)
     assert codes(waiting, event(EventKind.TRACKING_STARTED)) == ["sun_down", "tracking_started"]
+
+
+def test_a_stop_stands_before_the_alarms_it_found_there_behind_danger_and_what_came_later() -> None:
+    before, after = (AT - timedelta(seconds=90), AT + timedelta(seconds=1))
+    raised = {
+        code: Alarm(code, "T1", "A", FAULT.message, active=True, told=True, raised_at=at)
+        for code, at in (("home_lost", before), ("limit_switch", after))
+    }
+    danger = tracker(CASES["not stowed"])
+    for last, expected in (
+        (event(EventKind.STOPPED), ["not_stowed", "limit_switch", "stopped", "home_lost"]),
+        (event(EventKind.STOPPED, CONTROLLER), ["not_stowed", "home_lost", "limit_switch", "stopped"]),
+        (event(EventKind.TRACKING_STARTED), ["not_stowed", "home_lost", "limit_switch", "tracking_started"]),
+    ):
+        told = messages_of(danger, raised, last)
+        assert [message.code for message in told][:4] == expected
+    stopped = with_messages(tracker(), {"home_lost": raised["home_lost"]}, event(EventKind.STOPPED))
+    assert [message.code for message in stopped.messages] == ["stopped", "home_lost"]
+    assert headline(stopped) == stopped.messages[1], "the overview names the alarm"
 
 
 def test_what_the_controller_stopped_by_itself_is_told_as_that() -> None:

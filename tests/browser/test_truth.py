@@ -11,9 +11,12 @@ from app.web.languages.known import in_words
 from app.web.shell.page_facts import told_in_page
 from tests.browser.conftest import Opened, Plant, now
 from tests.every_state import AT, CASES, FAULT, StagedTracker, short_walk
+from tests.fake_alarms import alarm
 from tests.fake_data import commissioned
+from tests.patience import until
 
 T1 = "/trackers/T1"
+JUST_CHANGED_MS = 700
 TOLD = """() => {
   const seen = (one) => one.checkVisibility() && one.getBoundingClientRect().top < innerHeight;
   const [says, card] = [document.getElementById("says"), document.getElementById("urgent")];
@@ -26,6 +29,7 @@ TOLD = """() => {
   };
 }"""
 """What a page tells of the state and of what is most urgent, where it is in sight without a tap."""
+JOG_KEYS = "() => [...document.querySelectorAll('[data-jog]')].map((one) => one.getBoundingClientRect().top)"
 
 
 def stage(plant: Plant) -> StagedTracker:
@@ -64,7 +68,7 @@ def test_a_page_follows_a_tracker_through_its_states(size: str, plant: Plant, op
 
 
 def test_a_stop_by_somebody_is_told_and_ends_what_was_told_before(plant: Plant, opened: Opened) -> None:
-    stage(plant)
+    tracker = stage(plant)
     page = opened(f"{T1}/settings", "tablet")
     for kind, text, actor in (
         (EventKind.TRACKING_STARTED, "Tracking started, mode dual.", "zoe"),
@@ -74,6 +78,10 @@ def test_a_stop_by_somebody_is_told_and_ends_what_was_told_before(plant: Plant, 
         now(plant, lambda event=event: plant.machine.emit(event))  # type: ignore[misc]
     expect(page.locator(".says-first")).to_have_text(f"Stopped by ada · {page_time(page)}")
     assert "Tracking started" not in (page.locator("#says").text_content() or "")
+    bring(plant, tracker, "not stowed")
+    expect(page.locator("#says")).to_have_attribute("data-code", "not_stowed")
+    expect(page.locator(".says-first")).to_have_text(f"Stopped by ada · {page_time(page)}")
+    expect(page.locator(".message-title").first).to_have_text("Not stowed")
 
 
 def page_time(page: Page) -> str:
@@ -106,3 +114,66 @@ def test_an_action_that_is_off_says_why_when_it_is_pressed(plant: Plant, opened:
     assert why.bounding_box()["width"] <= 1  # type: ignore[index]
     form.focus()
     expect(form).to_have_attribute("data-told", "")
+
+
+def test_on_a_phone_keys_to_hold_that_are_off_say_why_in_sight(plant: Plant, opened: Opened) -> None:
+    tracker = stage(plant)
+    tracker.refused = (FAULT,)
+    page = opened(f"{T1}/commissioning/homing", "phone")
+    key, why = page.locator('[data-jog="azimuth"]').first, page.locator(".jog-panel > .reasons")
+    expect(key).to_be_disabled()
+    places = page.evaluate(JOG_KEYS)
+    box = key.bounding_box()
+    assert box is not None
+    page.mouse.click(box["x"] + 20, box["y"] + 20)
+    expect(page.locator(".jog-panel")).to_have_attribute("data-told", "")
+    expect(why).to_contain_text("The elevation axis does not follow.")
+    told = why.bounding_box()
+    assert told is not None
+    footer = page.locator(".footer").bounding_box()
+    assert footer is not None
+    assert 0 <= told["y"] < told["y"] + told["height"] <= footer["y"]
+    assert page.evaluate(JOG_KEYS) == places
+    page.locator("h1").click()
+    expect(page.locator(".jog-panel")).not_to_have_attribute("data-told", "")
+
+
+def test_a_second_tap_does_not_start_what_the_first_one_ended(plant: Plant, opened: Opened) -> None:
+    tracker = stage(plant)
+    bring(plant, tracker, "tracking")
+    page = opened(T1, "tablet", still=True, allow=("WebGL",))
+    slot = page.locator(".slots .slot").first
+    slot.locator("button:visible").click()
+    until(lambda: given(plant) == ["Stop"], "tracking is ended")
+    bring(plant, tracker, "at standstill")
+    start = slot.get_by_role("button", name="Start tracking")
+    start.click()
+    expect(slot.locator('form[action$="/track"] .outcome')).to_contain_text("has just changed")
+    assert given(plant) == ["Stop"]
+    page.clock.run_for(JUST_CHANGED_MS)
+    start.click()
+    until(lambda: given(plant) == ["Stop", "Track"], "tracking is started")
+
+
+def test_no_alarm_is_acknowledged_that_came_under_a_finger_or_the_focus(plant: Plant, opened: Opened) -> None:
+    tracker = stage(plant)
+    plant.machine.alarms = (alarm("drive_lost", AT),)
+    bring(plant, tracker, "silent drive while it holds")
+    page = opened(T1, "tablet", still=True, allow=("WebGL",))
+    card = page.locator("#urgent")
+    acknowledge = card.get_by_role("button", name="Acknowledge")
+    acknowledge.focus()
+    plant.machine.alarms += (alarm("not_stowed", AT),)
+    bring(plant, tracker, "not stowed")
+    expect(card).to_have_attribute("data-code", "not_stowed")
+    expect(acknowledge).not_to_be_focused()
+    acknowledge.click()
+    expect(card.locator(".outcome")).to_contain_text("has just changed")
+    assert given(plant) == []
+    page.clock.run_for(JUST_CHANGED_MS)
+    acknowledge.click()
+    until(lambda: given(plant) == ["AcknowledgeAlarm"], "the alarm is acknowledged")
+
+
+def given(plant: Plant) -> list[str]:
+    return [type(order.command).__name__ for order in plant.machine.orders]

@@ -7,6 +7,7 @@ from functools import cache
 
 import pytest
 
+from app.simulation.faults import Fault, FaultKind
 from app.sun.position import Location
 from app.tracker.commands.commands import (
     CommandRejected,
@@ -237,6 +238,20 @@ def test_a_lost_drive_in_a_storm_raises_the_condition() -> None:
     assert doing(plant) is ActivityName.HOLDING
 
 
+def test_at_a_limit_switch_the_panel_is_to_be_jogged_away_and_not_to_be_stowed_again() -> None:
+    plant = tracking()
+    plant.drive.inject(Fault(FaultKind.UPPER_LIMIT_STUCK, Axis.ELEVATION))
+    plant.blow(STORM)
+    for command in (None, Stow(StowName.WIND)):
+        if command:
+            plant.ask(command)
+        plant.forward(60)
+        reason = plant.snapshot.not_stowed
+        assert reason is not None
+        assert "has reached its limit switch" in reason.message
+        assert reason.hint == "Jog the axis away from the switch and check the home position."
+
+
 def test_a_jog_goes_on_for_five_seconds_while_the_wind_comes() -> None:
     plant = calm()
     sequence = 1
@@ -333,6 +348,13 @@ def test_wind_takes_a_tracker_that_snow_has_stowed(fault: FaultResult) -> None:
     plant.blow(2.0, snow_kg=4.0).forward(CALM_S + 120)
     assert plant.snapshot.stow is StowName.SNOW
     fault.recovers("automatic: after the calm the snow stow continues")
+
+
+def test_in_too_little_light_a_panel_stowed_by_command_reads_that_it_stays_so() -> None:
+    plant = tracking()
+    plant.ask(Stow(StowName.HAIL))
+    plant.blow(2.0, irradiance_wm2=10.0).forward(920)
+    assert promised(plant) == "The panel then stays stowed until you press Resume."
 
 
 def test_in_too_little_light_the_panel_stays_where_it_is() -> None:

@@ -1,19 +1,23 @@
 """A clock that differs from that of the device at hand is asked about before step 2 is done."""
 
+import re
 from dataclasses import replace
-from datetime import timedelta
+from datetime import UTC, datetime, timedelta
+from html import unescape
 
 import httpx
 
+from app.base.clock import VirtualClock
 from app.base.zones import zone_of
 from app.link.messages import SetClock
 from app.sun.position import Algorithm, sun_position
 from app.tracker.memory.memory import ClockSetting
-from tests.fakes import FakeMachine
+from tests.fakes import FakeMachine, fake_app, serving
 
 PAGE = "/trackers/T1/commissioning/clock"
 CLOCK = "/api/v1/site/clock"
 HTMX = {"HX-Request": "true"}
+ASKED = re.compile(r'name="(asked_for|asked_at)"\s+value="([^"]+)"')
 AHEAD = timedelta(hours=11, minutes=39)
 
 
@@ -53,8 +57,42 @@ async def test_a_typed_time_is_asked_about_and_kept(machine: FakeMachine, client
         "Enter must not confirm"
     )
     assert not orders(machine)
-    done = await client.post(PAGE, data=typed | device | {"confirmed": "yes"}, headers=HTMX)
+    sure = asked_about(asked.text) | {"confirmed": "yes"}
+    done = await client.post(PAGE, data=typed | device | sure, headers=HTMX)
     assert (done.status_code, len(orders(machine))) == (204, 1)
+
+
+async def test_a_typed_clock_is_what_was_asked_about_and_not_late_by_the_question() -> None:
+    clock = VirtualClock(datetime(2026, 6, 21, 9, tzinfo=UTC))
+    machine = FakeMachine(clock)
+    machine.rest()
+    typed, other = ({"date": "2026-06-21", "time": time, "time_zone": "UTC"} for time in ("12:00", "13:00"))
+    async with serving(fake_app(machine)) as client:
+
+        async def answered(data: dict[str, str], after_s: float = 0.0) -> tuple[int, dict[str, str]]:
+            """Return the status, and what the page sends with a yes to its question."""
+            clock.advance(timedelta(seconds=after_s))
+            machine.emit()
+            answer = await client.post(PAGE, data=data, headers=HTMX)
+            return answer.status_code, asked_about(answer.text) | {"confirmed": "yes"}
+
+        _, sure = await answered(typed)
+        for data in (
+            typed | {"confirmed": "yes"},
+            other | sure,
+            typed | sure | {"asked_at": "2026-06-21T12:00"},
+            typed | sure | {"asked_at": "2026-06-21T12:00:00+00:00"},
+        ):
+            assert (await answered(data))[0] == 422
+        status, sure = await answered(typed | sure, after_s=11 * 60.0)
+        assert (status, orders(machine)) == (422, [])
+        assert (await answered(typed | sure, after_s=45.0))[0] == 204
+    assert [one.at for one in orders(machine)] == [datetime(2026, 6, 21, 12, 0, 45, tzinfo=UTC)]
+
+
+def asked_about(page: str) -> dict[str, str]:
+    """Return what the page sends with the answer to its question."""
+    return {name: unescape(value) for name, value in ASKED.findall(page)}
 
 
 async def test_a_program_confirms_a_clock_that_differs(

@@ -14,6 +14,7 @@ from app.alarms.urgency import by_urgency, state_of
 from app.tracker.state.snapshot import ActivityName, Pair, Snapshot
 from app.tracker.values.operator_message import INFORMATION, OperatorMessage, StateWord
 from app.web.features.control.overview import Layout
+from app.web.services.narrowed import narrowed_site
 from app.web.shell.glances import IN_DANGER, LOOKS, counts_of
 from tests.browser.storm import IN_DANGER as NOT_STOWED
 from tests.browser.storm import SIXTY, STOWING, endanger, sixty_in_a_storm
@@ -229,3 +230,17 @@ async def test_an_alarm_leads_to_its_tracker_in_one_tap(
     outside = re.sub(r"<details.*?</details>", "", page, flags=re.S)
     assert re.findall(r'<a class="key alarm-open" href="/trackers/(\w+)">', outside) == list(NOT_STOWED)
     assert len(machine.trackers) == SIXTY
+
+
+async def test_the_only_tracker_is_shown_whatever_the_address_asks_for(
+    client: httpx.AsyncClient, machine: FakeMachine
+) -> None:
+    stage(machine, "not stowed")
+    assert shown((await client.get("/?state=stowed")).text) == ["T1"]
+
+
+def test_who_sees_one_tracker_of_many_in_trouble_is_told_of_that_one(machine: FakeMachine) -> None:
+    stage(machine, *["not stowed"] * 60)
+    site = machine.latest()
+    assert site is not None
+    assert [message.tracker_id for message in narrowed_site(site, frozenset({"T60"})).messages] == ["T60"]

@@ -1,15 +1,17 @@
 """Each page of a tracker tells its state, its most urgent message, and why a button does not work."""
 
 import re
+from dataclasses import replace
 from datetime import timedelta
 from html import unescape
+from itertools import product
 
 import httpx
 import pytest
 
 from app.access.roles import Role
 from app.base.message import N_
-from app.tracker.state.snapshot import Event, EventKind, Pair, Snapshot
+from app.tracker.state.snapshot import ActivityName, Event, EventKind, Pair, Snapshot
 from app.web.languages.catalogue import catalogue_of
 from app.web.languages.known import in_words
 from app.web.shell.page_facts import told_in_page
@@ -35,6 +37,8 @@ CARD = re.compile(
 FORM = re.compile(r"<form class=\"action\".*?</form>", re.DOTALL)
 OFF = re.compile(r"<(button|fieldset)\b[^>]*\bdisabled")
 WHY = re.compile(r'<ul class="reasons"[^>]*>\s*<li>|<p class="denied-why">')
+
+VALID = re.compile(r'data-when="measured"( hidden)?>\s*<(?:b|span)\s+data-when="homed(?:=true)?"( hidden)?>')
 
 
 @pytest.fixture
@@ -108,17 +112,48 @@ async def test_who_stopped_a_tracker_is_told_on_each_of_its_pages_until_somethin
     client: httpx.AsyncClient, machine: FakeMachine, staged: StagedTracker
 ) -> None:
     machine.emit(Event(AT, EventKind.STOPPED, "T1", N_("North field was stopped."), "ada"))
-    for path in PAGES:
+    for path, name in product(PAGES, ("at standstill", "not stowed")):
+        staged.case = CASES[name]
+        machine.emit()
         bar = BAR.search((await client.get(path)).text)
         assert bar is not None
+        assert bar[1] == ("not_stowed" if name == "not stowed" else "stopped")
         assert "Stopped by ada" in bar[3]
         assert re.search(r"\d\d:\d\d:\d\d", bar[3])
+    staged.case = CASES["at standstill"]
     later = AT + timedelta(seconds=5)
     machine.emit(Event(later, EventKind.TRACKING_STARTED, "T1", N_("Tracking started, mode dual."), "zoe"))
     for path in PAGES:
         text = (await client.get(path)).text
         assert "Stopped by ada" not in text
         assert "Tracking started, mode dual. · zoe, " in text
+
+
+async def test_a_home_position_is_not_called_valid_while_the_drive_is_silent(
+    client: httpx.AsyncClient, machine: FakeMachine, staged: StagedTracker
+) -> None:
+    for name, hidden in (("at standstill", False), ("silent drive while it holds", True)):
+        staged.case = CASES[name]
+        machine.emit()
+        for path in (T1, f"{T1}/commissioning/homing"):
+            found = VALID.search((await client.get(path)).text)
+            assert found is not None
+            assert (found[1] is not None) is hidden
+
+
+async def test_tracking_is_ended_where_it_runs_and_started_everywhere_else(
+    client: httpx.AsyncClient, machine: FakeMachine, staged: StagedTracker
+) -> None:
+    for case in CASES.values():
+        for tracking_on in (False, True):
+            tracks = case.fields["activity"] is ActivityName.TRACKING
+            staged.case = replace(case, fields=case.fields | {"tracking_on": tracking_on})
+            machine.emit()
+            slots = (await client.get(T1)).text.partition('class="slots"')[2]
+            for path, hidden in (("stop", not tracks), ("track", tracks)):
+                form = re.search(rf'<form class="action"[^>]*action="{T1}/{path}"[^>]*>', slots)
+                assert form is not None
+                assert form[0].rstrip(">").endswith(" hidden") is hidden, case
 
 
 @pytest.mark.parametrize("path", ["stop", "track", "park", "reset-fault", "stow", "resume"])

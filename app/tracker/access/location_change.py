@@ -50,21 +50,23 @@ def against_another_clock(
 
 def _led_by_the_clock(doing: Mapping[str, tuple[ActivityName, bool]]) -> Iterator[Reason]:
     for tracker_id, (activity, tracking_on) in doing.items():
-        end_tracking = say("End tracking of {tracker_id} first.", tracker_id=tracker_id)
+        stop = say("Stop {tracker_id} first.", tracker_id=tracker_id)
         match activity:
             case ActivityName.TRACKING:
                 text = say("{tracker_id} is tracking the sun by the present clock.", tracker_id=tracker_id)
-                yield Reason("follows_the_clock", text, end_tracking)
+                hint = say("End tracking of {tracker_id} first.", tracker_id=tracker_id)
+                yield Reason("follows_the_clock", text, hint)
             case ActivityName.SHOWING:
                 text = say("{tracker_id} is running a show by the present clock.", tracker_id=tracker_id)
-                yield Reason(
-                    "follows_the_clock", text, say("Stop {tracker_id} first.", tracker_id=tracker_id)
-                )
+                yield Reason("follows_the_clock", text, stop)
             case ActivityName.STOWING | ActivityName.STOWED | ActivityName.FAULTED if tracking_on:
                 text = say(
                     "{tracker_id} may continue tracking automatically by the present clock.",
                     tracker_id=tracker_id,
                 )
-                yield Reason("follows_the_clock", text, end_tracking)
+                wait = say(
+                    "Wait until {tracker_id} is tracking again, then end tracking.", tracker_id=tracker_id
+                )
+                yield Reason("follows_the_clock", text, stop if activity is ActivityName.FAULTED else wait)
             case _:
                 pass

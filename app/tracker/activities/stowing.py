@@ -43,6 +43,8 @@ from app.tracker.values.reason import Reason
 HAND_GRACE = timedelta(seconds=5)
 """For so long a motion by hand goes on when the weather demands a stow."""
 BY_HAND = (MoveKind.MOVE, MoveKind.STEP)
+BARRED = ("limit_switch", "forbidden_region")
+"""Why the way to the stow position ended, and would end again: the panel is jogged away first."""
 STOW_ACTIVITIES = (Stowing, Stowed)
 MOVES_BY_ITSELF = (ShowPhase.GOING_TO_START, ShowPhase.RUNNING)
 
@@ -279,7 +281,8 @@ def _because(state: ControllerState) -> tuple[Message, Message]:
         return join(" ", (one.message for one in against)), against[0].hint
     wait = state.waiting.reason
     if wait is not None:
-        return wait.message, N_("Press Stow. Start tracking also stows the panel first.")
+        again = N_("Press Stow. Start tracking also stows the panel first.")
+        return wait.message, wait.hint if wait.code in BARRED else again
     return (
         N_("the tracker is in manual and does not move automatically."),
         N_("Clear the area, then press Stow; or jog the panel."),

@@ -147,20 +147,26 @@ def _reason(state: ControllerState) -> Reason:
 
 def _afterwards(state: ControllerState, continues: Message) -> Message:
     """Return what this tracker will do once wind or snow demand nothing any more."""
-    stow = state.memory.stow
     if state.alarmed is not None:
         return say("The panel is not stowed. {hint}", hint=state.alarmed.hint)
-    if stow is StowName.PARK:
-        return N_("Afterward, the panel returns to its park position.")
-    if stow is not None:
-        return N_("The panel then stays stowed until you press Resume.")
+    if state.memory.stow is not None:
+        return _stays_stowed(state.memory.stow)
     if _goes_on(state):
         return continues
     return _NEEDS_OPERATOR if state.memory.tracking_on else _STAYS_OFF
 
 
+def _stays_stowed(stow: StowName) -> Message:
+    """Return what a tracker will do that was stowed or parked by command."""
+    if stow is StowName.PARK:
+        return N_("Afterward, the panel returns to its park position.")
+    return N_("The panel then stays stowed until you press Resume.")
+
+
 def _after_dark(state: ControllerState) -> Message:
     """Return what this tracker will do once there is enough light."""
+    if state.memory.stow is not None:
+        return _stays_stowed(state.memory.stow)
     if _goes_on(state):
         return N_("Tracking continues automatically once the irradiance is sufficient.")
     return _NEEDS_OPERATOR if state.memory.tracking_on else N_("No action is needed while tracking is off.")

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from enum import StrEnum
 
-from app.base.message import Message, say
+from app.base.message import Message
 
 PRIORITIES = (1, 2, 3, 4)
 MOST_SHOWN = 50
@@ -62,15 +62,6 @@ class AlarmNow:
     def calls(self) -> bool:
         """Return whether it waits to be acknowledged."""
         return self.state in CALLING
-
-    @property
-    def heading(self) -> str:
-        """Return its title, and of one that waits to be seen though its cause is gone that it is gone."""
-        return (
-            say("Returned to normal: {title}", title=self.title)
-            if self.state is AlarmState.RETURNED
-            else self.title
-        )
 
 
 @dataclass(frozen=True, slots=True)

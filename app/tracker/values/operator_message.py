@@ -40,7 +40,7 @@ class StateWord(StrEnum):
 class OperatorMessage:
     """One thing to know about a tracker or the site: what, what to do, since when, and by whom.
 
-    `priority` is that of the alarm, `INFORMATION` of what is none. `calls` says that its alarm `alarm_id`
+    `priority` is that of the alarm, 5 of what is none. `calls` says that its alarm `alarm_id`
     waits to be acknowledged. `tracker_id` and `where` name the tracker, in a list of the whole site; `where`
     is empty for the site itself.
     """

@@ -92,9 +92,8 @@ class States:
         if site is None:
             return LOST
         catalogue = catalogue_of(wanted.language)
-        bare = replace(site, trackers=())
-        seen = bare if wanted.trackers is None else narrowed_site(bare, wanted.trackers)
-        head = orjson.loads(in_language(catalogue, seen))
+        seen = site if wanted.trackers is None else narrowed_site(site, wanted.trackers)
+        head = orjson.loads(in_language(catalogue, replace(seen, trackers=())))
         chosen, allowed = self._chosen(wanted, since), wanted.trackers
         trackers = [self._text(one, wanted) for one in chosen if allowed is None or one in allowed]
         state: dict[str, Any] = {

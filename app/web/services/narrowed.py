@@ -10,6 +10,7 @@ from datetime import datetime
 from typing import TypeVar
 
 from app.alarms.alarm import Alarm
+from app.alarms.urgency import site_messages
 from app.alarms.view import counts_of
 from app.audit.entry import Sealed
 from app.link.messages import Machine, MachineUnreachable, Order, SiteDetail, UnknownTracker, Update
@@ -87,12 +88,13 @@ def narrowed_site(site: SiteSnapshot, trackers: frozenset[str]) -> SiteSnapshot:
     """Return a snapshot with these trackers, and the alarms and messages of these and of the site."""
     told = {None, *trackers}
     alarms = tuple(one for one in site.alarms if one.tracker_id in told)
+    mine = tuple(one for one in site.trackers if one.tracker_id in trackers)
     return replace(
         site,
-        trackers=tuple(one for one in site.trackers if one.tracker_id in trackers),
+        trackers=mine,
         alarms=alarms,
         alarm_counts=counts_of(alarms, flood=site.alarm_counts.flood),
-        messages=tuple(one for one in site.messages if one.tracker_id in told),
+        messages=site_messages(mine, alarms),
     )
 
 

@@ -227,6 +227,19 @@ class LocationPage:
 
 
 @dataclass(frozen=True, slots=True)
+class ClockAsked:
+    """What is asked of a typed clock: a doubt, what it would change, for which instant, and when."""
+
+    doubt: str = ""
+    moves: tuple[str, ...] = ()
+    instant: str = ""
+    at: str = ""
+
+
+NOT_ASKED = ClockAsked()
+
+
+@dataclass(frozen=True, slots=True)
 class ClockPage:
     """Step 2."""
 
@@ -236,8 +249,7 @@ class ClockPage:
     form: Form
     zones: tuple[str, ...]
     setting: ClockSetting
-    doubt: str = ""
-    moves: tuple[str, ...] = ()
+    asked: ClockAsked = NOT_ASKED
     is_saved: bool = False
 
 

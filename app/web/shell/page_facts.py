@@ -8,8 +8,8 @@ from markupsafe import Markup
 from app.alarms.catalogue import ANY_FAULT
 from app.alarms.urgency import FIRST_STATES, IN_DANGER, headline
 from app.base.message import N_
-from app.tracker.state.snapshot import ActivityName, ShowPhase, Snapshot
-from app.tracker.values.alarm_words import CALLING, QUIET, AlarmState
+from app.tracker.state.snapshot import ActivityName, EventKind, ShowPhase, Snapshot
+from app.tracker.values.alarm_words import CALLING, QUIET
 from app.tracker.values.operator_message import INFORMATION, OperatorMessage
 from app.web.charts.axis import ANGLE_STEPS_DEG, NUMBER_STEPS, TIME_STEPS_S
 from app.web.charts.drawings import HORIZON, SET_DEG
@@ -60,6 +60,13 @@ def told_in_page(tracker: Snapshot | None) -> OperatorMessage | None:
     return first if first is not None and first.priority <= IN_PAGE else None
 
 
+def told_in_bar(tracker: Snapshot) -> OperatorMessage | None:
+    """Return the message below the state in the bar: the first, or a stop behind one that the state says."""
+    first, second = (*tracker.messages[:2], None, None)[:2]
+    says_it = first is not None and first.code == tracker.state
+    return second if says_it and second is not None and second.code == EventKind.STOPPED else first
+
+
 @cache
 def page_facts(code: str) -> Markup:
     """Return as JSON what the scripts of a page in a language need to know."""
@@ -72,7 +79,7 @@ def page_facts(code: str) -> Markup:
         "measures": MEASURES,
         "nameless": NAMELESS,
         "steps": {"numbers": NUMBER_STEPS, "angles_deg": ANGLE_STEPS_DEG, "times_s": TIME_STEPS_S},
-        "alarms": {"calling": CALLING, "quiet": QUIET, "returned": AlarmState.RETURNED},
+        "alarms": {"calling": CALLING, "quiet": QUIET},
         "activities": {"by_hand": BY_HAND, "under_test": UNDER_TEST},
         "show": {"on_its_way": ON_ITS_WAY, "running": ShowPhase.RUNNING},
         "themes": {

@@ -26,7 +26,7 @@ from app.web.shell.contexts import Context
 from app.web.shell.deps import panel, principal
 from app.web.shell.help import help_for
 from app.web.shell.one_space import OneSpace
-from app.web.shell.page_facts import message_link, page_facts, told_in_page
+from app.web.shell.page_facts import message_link, page_facts, told_in_bar, told_in_page
 
 
 def options_said(options: Iterable[tuple[object, str]]) -> tuple[tuple[object, str], ...]:
@@ -85,6 +85,7 @@ def environment() -> Environment:
         "page_facts": page_facts,
         "version": VERSION,
         "message_link": message_link,
+        "told_in_bar": told_in_bar,
         "told_in_page": told_in_page,
         "headline": headline,
     }

@@ -113,7 +113,7 @@ def _answer(
         glances=(glances := _glances(frame.site, detail)),
         counts=counts_of(tuple(one.one for one in glances)),
         urgent=urgent_of(frame.site) if frame.site else None,
-        state=state,
+        state=state if len(glances) > 1 else "",
         layout=layout or _layout(len(glances)),
         chosen_layout=layout or "",
         form=form,

@@ -19,7 +19,7 @@ from app.web.http.errors import NotAcceptable
 from app.web.http.late_routes import page_router
 from app.web.http.needs import needs
 from app.web.http.whole_forms import MAY_BE_ABSENT
-from app.web.shell.contexts import ClockPage, ClockQuestion
+from app.web.shell.contexts import NOT_ASKED, ClockAsked, ClockPage, ClockQuestion
 from app.web.shell.deps import Panel, PanelDep
 from app.web.shell.formats import local
 from app.web.shell.forms import Typed, in_zone
@@ -31,6 +31,8 @@ router = page_router(prefix="/trackers/{tracker_id}/commissioning/clock")
 DeviceAt = Annotated[str, Form(max_length=40), MAY_BE_ABSENT]
 Confirmed = Annotated[str, Form(max_length=10), MAY_BE_ABSENT]
 NAMES = ("date", "time", "time_zone")
+LONGEST_QUESTION = timedelta(minutes=10)
+"""What was asked longer ago is asked again."""
 
 
 class ClockForm(BaseModel):
@@ -41,6 +43,8 @@ class ClockForm(BaseModel):
     time_zone: str = ""
     at: Annotated[str, MAY_BE_ABSENT] = ""
     confirmed: Annotated[str, MAY_BE_ABSENT] = ""
+    asked_for: Annotated[str, MAY_BE_ABSENT] = ""
+    asked_at: Annotated[str, MAY_BE_ABSENT] = ""
 
 
 @router.get("")
@@ -103,7 +107,6 @@ async def set_by_hand(
 ) -> Response:
     """Set the controller's clock to a typed date and time; ask first where a clock differs."""
     detail = await built.machine.detail()
-    at, confirmed = typed.at, typed.confirmed
     found = Typed(typed.model_dump(include=set(NAMES)))
     day, time = found.day("date", N_("Date")), found.clock_time("time", N_("Time"))
     if typed.time_zone not in zones():
@@ -111,16 +114,30 @@ async def set_by_hand(
     if found.errors:
         return _answer(press.request, tracker_id, detail, found, status=422)
     instant = in_zone(day, time, typed.time_zone)
-    doubt = clock_doubt(instant, _told(at))
-    moves = _moves(built, detail, instant, typed.time_zone)
-    if (doubt or moves) and confirmed != "yes":
-        return _answer(press.request, tracker_id, detail, found, status=422, doubt=doubt, moves=moves)
-    await press.send(SetClock("manual", instant, typed.time_zone))
+    doubt, moves = clock_doubt(instant, _told(typed.at)), _moves(built, detail, instant, typed.time_zone)
+    now = built.site_now()
+    answered = _answered(typed, instant, now)
+    if (doubt or moves) and answered is None:
+        asked = ClockAsked(doubt, moves, instant.isoformat(), now.isoformat())
+        return _answer(press.request, tracker_id, detail, found, status=422, asked=asked)
+    await press.send(SetClock("manual", answered or instant, typed.time_zone))
     return go(press.request, _saved(tracker_id))
 
 
+def _answered(typed: ClockForm, instant: datetime, now: datetime) -> datetime | None:
+    """Return what the clock is to show now that the question was answered; None if it was another question.
+
+    A typed time is that of the moment at which it was first sent: what the question took is added.
+    """
+    asked_for, asked_at = _told(typed.asked_for), _told(typed.asked_at)
+    if typed.confirmed != "yes" or asked_for != instant or asked_at is None:
+        return None
+    took = now - asked_at
+    return instant + took if timedelta(0) <= took <= LONGEST_QUESTION else None
+
+
 def _told(at: str) -> datetime | None:
-    """Return what this device's clock showed, None where its browser did not tell."""
+    """Return what a page tells of a clock, None where its browser did not tell."""
     try:
         instant = read_instant(at)
     except ValueError:
@@ -146,8 +163,7 @@ def _answer(
     typed: Typed,
     *,
     status: int = 200,
-    doubt: str = "",
-    moves: tuple[str, ...] = (),
+    asked: ClockAsked = NOT_ASKED,
     is_saved: bool = False,
 ) -> Response:
     frame = wizard_frame(request, tracker_of(detail, tracker_id), StepName.CLOCK)
@@ -156,8 +172,7 @@ def _answer(
         form=typed.form(NAMES),
         zones=zones(),
         setting=detail.site.clock,
-        doubt=doubt,
-        moves=moves,
+        asked=asked,
         is_saved=is_saved,
     )
     return page(request, context, block="manual", status=status)
