@@ -87,7 +87,7 @@ def test_of_a_silent_drive_is_said_that_it_does_not_answer_and_since_when(site: 
     assert site.tracker.activity is ActivityName.STOPPING
     assert pill.inner_text() == word(page) == "No connection"
     first = page.locator(".says-first").inner_text()
-    assert re.fullmatch(r"Drive does not answer · \d\d:\d\d:\d\d", first)
+    assert re.fullmatch(r"Drive does not answer · since \d\d:\d\d:\d\d", first)
     assert page.locator(".says-text").text_content() == "No connection to the drive"
     said = page.locator("main").inner_text()
     assert "The drive of Tracker 1 does not answer." in said

@@ -63,7 +63,10 @@ async def test_a_typed_day_outside_the_years_of_the_sun_is_refused_at_its_field(
     day: str, zone: str, machine: FakeMachine, client: httpx.AsyncClient
 ) -> None:
     machine.rest()
-    typed = {"date": day, "time": "12:00:00", "time_zone": zone, "confirmed": "yes"}
+    site = machine.latest()
+    assert site is not None
+    asked = {"asked_for": f"{day}T12:00:00+00:00", "asked_at": site.at.isoformat()}
+    typed = {"date": day, "time": "12:00:00", "time_zone": zone, "confirmed": "yes"} | asked
     answer = await client.post(CLOCK, data=typed)
     assert answer.status_code == (303 if day == "2099-12-31" else 422), answer.text
     assert day == "2099-12-31" or REFUSED in answer.text

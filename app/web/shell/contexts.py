@@ -227,19 +227,6 @@ class LocationPage:
 
 
 @dataclass(frozen=True, slots=True)
-class ClockAsked:
-    """What is asked of a typed clock: a doubt, what it would change, for which instant, and when."""
-
-    doubt: str = ""
-    moves: tuple[str, ...] = ()
-    instant: str = ""
-    at: str = ""
-
-
-NOT_ASKED = ClockAsked()
-
-
-@dataclass(frozen=True, slots=True)
 class ClockPage:
     """Step 2."""
 
@@ -249,7 +236,10 @@ class ClockPage:
     form: Form
     zones: tuple[str, ...]
     setting: ClockSetting
-    asked: ClockAsked = NOT_ASKED
+    doubt: str = ""
+    moves: tuple[str, ...] = ()
+    asked_for: str = ""
+    asked_at: str = ""
     is_saved: bool = False
 
 

@@ -1,5 +1,6 @@
 """Step 2: whose clock to trust, and the sun now, to be held against a shadow."""
 
+from collections.abc import Mapping
 from datetime import datetime, timedelta
 from typing import Annotated
 
@@ -19,7 +20,7 @@ from app.web.http.errors import NotAcceptable
 from app.web.http.late_routes import page_router
 from app.web.http.needs import needs
 from app.web.http.whole_forms import MAY_BE_ABSENT
-from app.web.shell.contexts import NOT_ASKED, ClockAsked, ClockPage, ClockQuestion
+from app.web.shell.contexts import ClockPage, ClockQuestion
 from app.web.shell.deps import Panel, PanelDep
 from app.web.shell.formats import local
 from app.web.shell.forms import Typed, in_zone
@@ -118,8 +119,8 @@ async def set_by_hand(
     now = built.site_now()
     answered = _answered(typed, instant, now)
     if (doubt or moves) and answered is None:
-        asked = ClockAsked(doubt, moves, instant.isoformat(), now.isoformat())
-        return _answer(press.request, tracker_id, detail, found, status=422, asked=asked)
+        asked = {"asked_for": instant.isoformat(), "asked_at": now.isoformat(), "doubt": doubt}
+        return _answer(press.request, tracker_id, detail, found, status=422, moves=moves, asked=asked)
     await press.send(SetClock("manual", answered or instant, typed.time_zone))
     return go(press.request, _saved(tracker_id))
 
@@ -163,7 +164,8 @@ def _answer(
     typed: Typed,
     *,
     status: int = 200,
-    asked: ClockAsked = NOT_ASKED,
+    moves: tuple[str, ...] = (),
+    asked: Mapping[str, str] | None = None,
     is_saved: bool = False,
 ) -> Response:
     frame = wizard_frame(request, tracker_of(detail, tracker_id), StepName.CLOCK)
@@ -172,7 +174,8 @@ def _answer(
         form=typed.form(NAMES),
         zones=zones(),
         setting=detail.site.clock,
-        asked=asked,
+        moves=moves,
         is_saved=is_saved,
+        **(asked or {}),
     )
     return page(request, context, block="manual", status=status)
