@@ -10,9 +10,9 @@ function told(form) {
 
 const off = "button:disabled, fieldset:disabled";
 
-// The form of an action that is off, or the panel of keys that are, around what was pressed or has the focus.
-function offAround(target) {
-  const form = target.closest?.(".slot .action, .jog-panel:has(> .reasons:not(:empty))");
+// The form of an action that is off around what was pressed or has the focus; or the panel of keys that are.
+function offAround(target, kinds) {
+  const form = target.closest?.(kinds);
   return form?.querySelector(off) ? form : null;
 }
 
@@ -35,9 +35,9 @@ export function start() {
   if (!document.querySelector(".slot, .jog-panel")) return;
   for (const slot of document.querySelectorAll(".slot:has(form.action + form.action)")) onlyAsRead(slot, () => actionsOf(slot));
   for (const kind of ["state", "link"]) live.on(kind, reach);
-  addEventListener("focusin", ({ target }) => told(offAround(target)));
+  addEventListener("focusin", ({ target }) => told(offAround(target, ".slot .action")));
   addEventListener("pointerdown", ({ target }) => {
-    told(offAround(target));
+    told(offAround(target, ".slot .action, .jog-panel:has(> .reasons:not(:empty))"));
     if (target.closest?.(".outcome")) return;
     const form = target.closest?.(".slot .action");
     for (const outcome of document.querySelectorAll(".slot .outcome")) if (!form?.contains(outcome)) outcome.replaceChildren();
