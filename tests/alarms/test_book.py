@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, invariant, rule
 
 from app.alarms import lifecycle as pages
+from app.alarms.catalogue import CATALOGUE
 from app.alarms.conditions import Condition
 from app.alarms.lifecycle import Book, Change, Happened, UnknownAlarm
 from app.alarms.view import Ranking, Shown
@@ -185,6 +186,13 @@ def test_the_first_of_a_group_is_marked(desk: Desk) -> None:
     desk.see(of("encoder_jump"), of("following_error"), of("following_error", "T2"), of("drive_fault"))
     first = {name for name, alarm in desk.book.alarms.items() if alarm.first_out}
     assert first == {"encoder_jump@T1", "following_error@T2", "drive_fault@T1"}
+
+
+def test_an_alarm_says_what_to_do_now_as_its_condition_has_it_else_in_general(desk: Desk) -> None:
+    for hint in ("Clear the area, then press Stow.", "Jog the axis away from the switch.", ""):
+        desk.see(replace(of("not_stowed"), hint=hint), for_s=5.0)
+        alarms, *_ = shown(desk)
+        assert [one.do for one in alarms] == [hint or CATALOGUE["not_stowed"].do]
 
 
 def shown(desk: Desk) -> Shown:

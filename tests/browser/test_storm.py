@@ -127,6 +127,18 @@ def test_a_count_shows_its_trackers_alone_until_it_is_tapped_again(storm: Plant,
     assert len(order(page)) == 60
 
 
+def test_a_press_where_something_else_has_just_stood_stows_nothing(storm: Plant, opened: Opened) -> None:
+    page = opened("/", "tablet", still=True)
+    page.evaluate("document.getElementById('counts').style.minHeight = '300px'")
+    stow_it = page.get_by_role("button", name="Stow T31")
+    stow_it.click()
+    expect(page.locator("#site-urgent .outcome")).to_contain_text("has just changed")
+    assert stowed(storm) == []
+    page.clock.run_for(JUST_CHANGED_MS)
+    stow_it.click()
+    until(lambda: stowed(storm) == ["T31"], "the order arrives")
+
+
 def test_what_is_told_above_all_passes_to_the_next_and_stows_that_one(storm: Plant, opened: Opened) -> None:
     page = opened("/", "tablet", still=True)
     urgent = page.locator("#site-urgent")

@@ -153,6 +153,11 @@ def test_a_second_tap_does_not_start_what_the_first_one_ended(plant: Plant, open
     page.clock.run_for(JUST_CHANGED_MS)
     start.click()
     until(lambda: given(plant) == ["Stop", "Track"], "tracking is started")
+    bring(plant, tracker, "tracking")
+    expect(start).to_be_hidden()
+    bring(plant, tracker, "interrupted")
+    expect(start).to_be_visible()
+    expect(slot.get_by_role("button", name="End tracking")).to_be_hidden()
 
 
 def test_no_alarm_is_acknowledged_that_came_under_a_finger_or_the_focus(plant: Plant, opened: Opened) -> None:

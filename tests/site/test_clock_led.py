@@ -68,3 +68,5 @@ def test_who_is_led_by_the_clock(activity: ActivityName) -> None:
         assert len(found) == (2 if led else 0)
         assert all(key in one.message + one.hint for key, one in zip(("T1", "T2"), found, strict=False))
         assert against_another_clock(timedelta(minutes=1), {"T1": (activity, tracking_on)}) == ()
+        is_stowed = activity in {ActivityName.STOWING, ActivityName.STOWED}
+        assert all(one.hint.startswith("Wait until") is is_stowed for one in found), "nobody ends a stow"
