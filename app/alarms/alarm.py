@@ -80,6 +80,11 @@ class Alarm:
         return self.state is not AlarmState.NORMAL
 
 
+def place_in(alarm_id: str) -> str | None:
+    """Return the tracker in the name of an alarm, None where it is the site's."""
+    return alarm_id.partition("@")[2] or None
+
+
 def place_of(alarm: Alarm) -> Message:
     """Return where an alarm stands: the name of a tracker as it is, the site as a word."""
     return plain(alarm.where) if alarm.tracker_id is None else say("{name}", name=alarm.where)

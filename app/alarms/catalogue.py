@@ -275,6 +275,12 @@ ENTRIES = (
         "keep the clock correct."),
     ),
     Entry(
+        "clock_differs", 3, Group.CLOCK, N_("Clocks differ"),
+        N_("One of two clocks is wrong. If it is the controller's, the panel does not face the sun."),
+        N_("Compare both with a third clock, and set the one that is wrong: the controller's in step 2."),
+        SHORT, LONG,
+    ),
+    Entry(
         "clock_off", 2, Group.CLOCK, N_("Clock is minutes off"),
         N_("No tracking: the panel would have a pointing error."),
         N_("Set the clock in step 2. If the sun check reports this although the clock is right, "

@@ -4,8 +4,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from operator import attrgetter
 
-from app.alarms.alarm import Alarm
-from app.alarms.catalogue import ANY_FAULT, CATALOGUE, entry_of
+from app.alarms.alarm import Alarm, place_in
+from app.alarms.catalogue import ANY_FAULT, CATALOGUE, Group, entry_of
 from app.alarms.conditions import Condition, told_by_tracker
 from app.base.message import N_, NOTHING, Message, Word, say
 from app.tracker.protections.words import ServiceState
@@ -118,10 +118,10 @@ def messages_of(
 ) -> tuple[OperatorMessage, ...]:
     """Return what to know about a tracker, the most urgent first, each code once.
 
-    `alarms` are those of the tracker by `alarm_id`: one that was shelved, or is suppressed, is not told,
-    unless it is the tracker's own state. A motion that is announced is first, since it begins within seconds;
-    a stop by somebody comes before what is waited for, and before alarms that were there when it was pressed,
-    but for those of priority 1.
+    `alarms` are those of the tracker, and of the site that concern it, by `alarm_id`: one that was shelved,
+    or is suppressed, is not told, unless it is the tracker's own state. A motion that is announced is first,
+    since it begins within seconds; a stop by somebody comes before what is waited for, and before alarms that
+    were there when it was pressed, but for those of priority 1.
     """
     urgent = sorted(_alarms(tracker, alarms), key=attrgetter("priority"))
     found: dict[str, OperatorMessage] = {}
@@ -249,13 +249,25 @@ def by_urgency(trackers: Iterable[Snapshot]) -> list[Snapshot]:
 
 
 def headline(tracker: Snapshot) -> OperatorMessage | None:
-    """Return the most urgent message of a tracker: of its alarms, if any; else what it tells first."""
+    """Return the most urgent message on a tracker's page: of its alarms, if any; else what it tells first."""
     return min(tracker.messages, key=attrgetter("priority"), default=None)
+
+
+def own_headline(tracker: Snapshot) -> OperatorMessage | None:
+    """Return the most urgent message of a tracker beside others: what concerns all of them is left out."""
+    own = (one for one in tracker.messages if not one.alarm_id or place_in(one.alarm_id) is not None)
+    return min(own, key=attrgetter("priority"), default=None)
+
+
+def concerns_all(alarm: Alarm) -> bool:
+    """Return whether an alarm of the site is told on the page of each tracker: its clock, or danger."""
+    entry = alarm.entry
+    return entry.priority == 1 or (entry.group is Group.CLOCK and entry.priority <= MOST_URGENT)
 
 
 def first_priority(tracker: Snapshot) -> int:
     """Return the priority of the headline of a tracker, `INFORMATION` without any alarm."""
-    first = headline(tracker)
+    first = own_headline(tracker)
     return INFORMATION if first is None else first.priority
 
 
@@ -265,7 +277,7 @@ def _is_urgent(tracker: Snapshot) -> bool:
 
 def _at(tracker: Snapshot) -> OperatorMessage:
     """Return what the site tells of a tracker: its headline, or that it is on local if nothing is urgent."""
-    first = headline(tracker)
+    first = own_headline(tracker)
     told = first if first is not None and first.priority <= MOST_URGENT else _LOCAL
     return replace(told, tracker_id=tracker.tracker_id, where=tracker.name)
 

@@ -1,12 +1,12 @@
-"""Instants as programs and people write them, leap seconds included."""
+"""Instants and lengths of time as programs and people write them, leap seconds included."""
 
 import re
-from datetime import UTC, date, datetime
+from datetime import UTC, date, datetime, timedelta
 from typing import Annotated
 
 from pydantic import AfterValidator, AwareDatetime, BeforeValidator, Strict
 
-from app.base.message import say
+from app.base.message import say, with_format
 
 FIRST_YEAR, LAST_YEAR = 1970, 2099
 """The years in which the sun is known and a clock can be right; a day more or less stays in the calendar."""
@@ -81,3 +81,15 @@ def _written_day(given: object) -> object:
 
 Day = Annotated[date, BeforeValidator(_written_day)]
 """A civil date in what comes in."""
+
+
+def duration(value: timedelta | float) -> str:
+    """Return a length of time such as `3 min`, `3 min 05 s` or `15 h 12 min`."""
+    total_s = round(value.total_seconds() if isinstance(value, timedelta) else value)
+    hours, rest = divmod(abs(total_s), 3600)
+    minutes, seconds = divmod(rest, 60)
+    if hours:
+        return say("{hours} h {minutes} min", hours=hours, minutes=with_format(minutes, "02d"))
+    if minutes and seconds:
+        return say("{minutes} min {seconds} s", minutes=minutes, seconds=with_format(seconds, "02d"))
+    return say("{minutes} min", minutes=minutes) if minutes else f"{seconds} s"

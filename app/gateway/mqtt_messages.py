@@ -7,7 +7,7 @@ from typing import Any
 
 import orjson
 
-from app.alarms.urgency import headline
+from app.alarms.urgency import own_headline
 from app.gateway.outbox import recording_state
 from app.store.store import JournalEntry
 from app.tracker.memory.recording import RecordingInfo
@@ -95,7 +95,7 @@ def tracker_payload(site: SiteSnapshot, tracker: Snapshot) -> bytes:
         "mode": tracker.mode,
         "fault": None if fault is None else asdict(fault),
         "waiting": [asdict(reason) for reason in tracker.waiting],
-        "message": None if (first := headline(tracker)) is None else asdict(first),
+        "message": None if (first := own_headline(tracker)) is None else asdict(first),
     }
     return orjson.dumps(told)
 

@@ -222,6 +222,19 @@ class RenewControl:
     )
 
 
+@dataclass(frozen=True, slots=True)
+class ReportDeviceClock:
+    """A page tells by how much the controller's clock is ahead of that of its device.
+
+    `page` is a name that the page has for as long as it is open.
+    """
+
+    page: str
+    ahead_s: float
+    kind: Literal["report_device_clock"] = "report_device_clock"
+    spec: ClassVar = OrderSpec(needs=Permission.READ, by=Interface.PAGE, audited=False)
+
+
 ControlOrder = RequestControl | AnswerControl | ReleaseControl | RenewControl
 """What somebody says about control."""
 
@@ -289,7 +302,7 @@ SiteCommand = (
     | ConfirmStep | SavePlan | TakeSighting | ApplySightings | StopAll | SaveRecording | DeleteRecording
     | DriveOrder | ReportWeather | SetMetStation | SimulateWeather | SetWeatherWindows | AlarmOrder
     | NotificationOrder | ControlOrder | LockOrder | RecordOrder | UndoSettings | UndoSiteSettings
-    | InjectFault | EndInjectedFaults
+    | InjectFault | EndInjectedFaults | ReportDeviceClock
 )  # fmt: skip
 
 

@@ -4,6 +4,7 @@ import asyncio
 from contextlib import suppress
 from datetime import datetime, timedelta
 from functools import partial
+from secrets import token_hex
 from typing import Annotated, Any, Literal, assert_never
 
 from fastapi import APIRouter
@@ -23,7 +24,8 @@ from app.base.logs import get_logger
 from app.base.message import N_, say, told_by
 from app.base.permission import Permission
 from app.link.lanes import Lanes
-from app.link.messages import MachineUnreachable, RenewControl, StopAll, UnknownTracker
+from app.link.messages import MachineUnreachable, RenewControl, ReportDeviceClock, StopAll, UnknownTracker
+from app.tracker.access.location_change import MOST_APART
 from app.tracker.commands.commands import CommandRejected, EndJog, Jog, Stop
 from app.tracker.settings.axes import Axis, JogSpeed
 from app.tracker.values.reason import Reason
@@ -44,6 +46,8 @@ router = APIRouter()
 
 MOST_IN_FLIGHT = 4
 STAY_EVERY = timedelta(seconds=3)
+PROMPT = timedelta(seconds=5)
+"""What a clock shows is not compared when it comes later than this."""
 DEAD_PRESS = Reason(
     "press_dead", N_("This jog command has ended."), N_("Release the button and press it again.")
 )
@@ -112,15 +116,44 @@ class StopEverything(_Incoming):
 
 
 class Ping(_Incoming):
-    """The page measures the connection, and tells whether somebody can see it."""
+    """The page measures the connection, and tells whether somebody can see it, and what its clock shows.
+
+    `at` is in milliseconds since 1970.
+    """
 
     type: Literal["ping"]
     tc: Milliseconds
     visible: bool = False
+    at: Milliseconds | None = None
 
 
 Incoming = Annotated[JogBeat | JogEnd | StopOne | StopEverything | Ping, Discriminator("type")]
 _incoming: TypeAdapter[Incoming] = TypeAdapter(Incoming)
+
+
+class DeviceReports:
+    """Tells the controller how far the clock of a page's device is off, while it is over a minute off."""
+
+    def __init__(self, panel: Panel) -> None:
+        self._panel = panel
+        self._page = token_hex(8)
+        self._told_at: datetime | None = None
+
+    async def hear(self, shown_ms: float, who: Principal) -> None:
+        """Tell what the device's clock shows where that has to be known, or is over."""
+        site, now = self._panel.machine.latest(), self._panel.clock.now()
+        who = self._panel.keeper.current(who)
+        if site is None or not who.may(Permission.READ):
+            return
+        ahead_s = site.at.timestamp() - shown_ms / 1000.0
+        if abs(ahead_s) <= MOST_APART.total_seconds():
+            due, told_at = self._told_at is not None, None
+        else:
+            due, told_at = self._told_at is None or now - self._told_at >= STAY_EVERY, now
+        if due:
+            self._told_at = told_at
+            with suppress(CommandRejected, MachineUnreachable, ValueError, *FORBIDDEN):
+                await self._panel.machine.execute(order_of(who, ReportDeviceClock(self._page, ahead_s)))
 
 
 class Session:
@@ -140,6 +173,7 @@ class Session:
         self._endings: Lanes[None] = Lanes(panel.clock)
         self._stray = JogEnd(type="end_jog", tracker_id="-", press_id="-")
         self._stayed_at = panel.clock.now() - STAY_EVERY
+        self._device = DeviceReports(panel)
 
     def hear(self, text: str) -> None:
         """Act on one message; nothing here waits."""
@@ -163,13 +197,18 @@ class Session:
                 self._stop_soon(Stop(), tracker_id)
             case StopEverything():
                 self._stop_soon(StopAll())
-            case Ping(tc=tc, visible=visible):
-                self._delay.beyond_best(tc, self._clock.now())
-                if visible:
-                    self._hub.spawn(self._stay())
-                self._tell("pong", tc=tc)
+            case Ping():
+                self._pinged(message)
             case _:
                 assert_never(message)
+
+    def _pinged(self, ping: Ping) -> None:
+        late = self._delay.beyond_best(ping.tc, self._clock.now())
+        if ping.at is not None and late <= PROMPT:
+            self._hub.spawn(self._device.hear(ping.at, self._who))
+        if ping.visible:
+            self._hub.spawn(self._stay())
+        self._tell("pong", tc=ping.tc)
 
     def close(self) -> None:
         """The page is gone: end its presses at once."""

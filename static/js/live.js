@@ -47,7 +47,7 @@ let stateAt = 0;
 let openedAt = 0;
 let leaving = false;
 
-const ping = () => live.send({ type: "ping", tc: performance.now(), visible: !document.hidden });
+const ping = () => live.send({ type: "ping", tc: performance.now(), visible: !document.hidden, at: Date.now() });
 
 const tell = (kind, detail) => listeners[kind].forEach((listener) => listener(detail));
 

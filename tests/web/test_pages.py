@@ -6,13 +6,14 @@ from dataclasses import replace
 import httpx
 import pytest
 
+from app.base.instants import duration
 from app.link.messages import ConfigureTracker, SetClock, SetLocation
 from app.tracker.commands.commands import GoToStart, Move, SelectMode, SetHome, Step
 from app.tracker.settings.config import MountConfig, MountKind
 from app.tracker.state.snapshot import ActivityName
 from app.tracker.values.mode import Mode
 from app.tracker.values.reason import Reason
-from app.web.shell.formats import compass, duration, shown
+from app.web.shell.formats import compass, shown
 from tests.fakes import FakeMachine
 from tests.web.filled import filled
 

@@ -6,18 +6,29 @@ from datetime import UTC, datetime, timedelta
 
 from app.base.build import BUILT_AT
 from app.base.clock import Clock
-from app.base.instants import is_of_these_times, of_these_times
-from app.base.message import N_, say, with_format
-from app.site.clock.clock_offset import ClockOffset
+from app.base.instants import duration, is_of_these_times, of_these_times
+from app.base.message import N_, Word, say, with_format
+from app.site.clock.clock_offset import HINT, NOTHING, ClockOffset
+from app.site.clock.device_clocks import DeviceClocks
 from app.site.clock.ntp import KernelClock
+from app.tracker.access.location_change import MOST_APART
 from app.tracker.memory.memory import ClockSetting
 from app.tracker.state.snapshot import ClockState
+from app.tracker.values.actors import LOCAL_USER
 from app.tracker.values.reason import Reason
 
 LARGEST_STEP = timedelta(seconds=2)
 STABLE_AFTER = timedelta(seconds=60)
 
 UNSET = Reason("clock_unset", N_("The clock has not been set."), N_("Save the clock in step 2."))
+
+
+_KEPT = N_("NTP keeps the controller's clock correct: set the clock of that device.")
+
+
+def _minutes(length: timedelta) -> str:
+    """Return a difference of clocks in words that stay the same while it is told again and again."""
+    return duration(round(abs(length) / timedelta(minutes=1)) * timedelta(minutes=1))
 
 
 def no_drift() -> timedelta:
@@ -59,6 +70,7 @@ class Timekeeper:
         self._setting = setting if can_be(setting, clock.now()) else ClockSetting()
         self._followed = drift()
         self.offset = ClockOffset(kernel())
+        self.devices = DeviceClocks(clock)
         self._jumped_at: datetime | None = None
         self._jumped_by = timedelta(0)
 
@@ -157,6 +169,60 @@ class Timekeeper:
             )
         return (*found, *self.offset.reasons())
 
+    def differences(self) -> tuple[Reason, ...]:
+        """Return that the clock is over a minute off another: one that NTP keeps, or that of a device."""
+        by_hand = self._by_hand()
+        if abs(by_hand) > MOST_APART:
+            length = _minutes(by_hand)
+            text = (
+                say(
+                    "The controller's clock was set manually, {length} ahead of the computer's clock, "
+                    "which NTP keeps correct.",
+                    length=length,
+                )
+                if by_hand > NOTHING
+                else say(
+                    "The controller's clock was set manually, {length} behind the computer's clock, "
+                    "which NTP keeps correct.",
+                    length=length,
+                )
+            )
+            return (Reason("clock_differs", text, N_("Choose Keep the system clock in step 2.")),)
+        device = self.devices.furthest()
+        if device is None:
+            return ()
+        whose, length = device.whose, _minutes(device.ahead)
+        who = Word(LOCAL_USER) if whose == LOCAL_USER else whose
+        text = (
+            say(
+                "The controller's clock is {length} ahead of the clock of the device used by {who}.",
+                length=length,
+                who=who,
+            )
+            if device.ahead > NOTHING
+            else say(
+                "The controller's clock is {length} behind the clock of the device used by {who}.",
+                length=length,
+                who=who,
+            )
+        )
+        return (Reason("clock_differs", text, _KEPT if self.offset.is_kept else HINT),)
+
+    def _by_hand(self) -> timedelta:
+        """Return by how much the clock was set ahead of a clock that NTP keeps."""
+        is_known = self._setting.source == "manual" and self.offset.is_kept
+        return timedelta(seconds=self._setting.offset_s) if is_known else NOTHING
+
+    def _off_s(self) -> float | None:
+        """Return by how much the clock is known to be fast; a device counts where NTP keeps no clock."""
+        device = None if self.offset.is_kept else self.devices.furthest()
+        known = (
+            self.offset.seconds,
+            self._by_hand().total_seconds() or None,
+            None if device is None else device.ahead.total_seconds(),
+        )
+        return max((one for one in known if one is not None), key=abs, default=None)
+
     def state(self) -> ClockState:
         """Return the clock as the pages show it."""
         reasons = self.reasons()
@@ -167,6 +233,6 @@ class Timekeeper:
             None if self.offset.kernel is None else self.offset.kernel.synchronised,
             self._setting.set_at,
             reasons,
-            self.offset.warnings(),
-            self.offset.seconds,
+            (*self.offset.warnings(), *self.differences()),
+            self._off_s(),
         )

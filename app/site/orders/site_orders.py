@@ -12,6 +12,7 @@ from app.link.messages import (
     ConfirmStep,
     DeleteRecording,
     RenameSite,
+    ReportDeviceClock,
     SavePlan,
     SaveRecording,
     SetClock,
@@ -112,6 +113,13 @@ async def set_clock(model: SiteModel, command: SetClock, actor: str) -> tuple[Ev
     events = await _keep(model, _confirmed(state, StepName.CLOCK, given), event)
     model.timekeeper.adopt(setting)
     return events
+
+
+async def note_device_clock(model: SiteModel, command: ReportDeviceClock, actor: str) -> tuple[Event, ...]:
+    """Note how far the clock of a device is from that of the site."""
+    ahead = timedelta(seconds=command.ahead_s)
+    model.timekeeper.devices.heard(command.page, actor, ahead)
+    return ()
 
 
 async def set_drive_clocks(model: SiteModel) -> None:

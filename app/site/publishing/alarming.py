@@ -6,10 +6,11 @@ from datetime import datetime, timedelta
 from typing import assert_never
 
 from app.alarms import lifecycle as pages
-from app.alarms.alarm import Alarm, place_of
+from app.alarms.alarm import Alarm, place_in, place_of
 from app.alarms.books import Books, Place
 from app.alarms.conditions import Condition, SiteHealth, of_site, of_tracker
 from app.alarms.lifecycle import Book, Change, Happened
+from app.alarms.urgency import concerns_all
 from app.alarms.view import Shown
 from app.base.message import N_, Message, say
 from app.link.alarm_orders import AcknowledgeAlarm, ShelveAlarm, UnshelveAlarm
@@ -113,12 +114,16 @@ class AlarmDesk:
         return self._turn(place, *pages.unshelve(book, command.alarm_id, actor), at)
 
     def _opened(self, alarm_id: str) -> tuple[Place, Book, datetime]:
-        place = alarm_id.partition("@")[2] or None
+        place = place_in(alarm_id)
         return place, self.books.of(place), self.model.now()
 
     def of(self, tracker_id: str) -> Mapping[str, Alarm]:
         """Return the alarms of a tracker by `alarm_id`."""
         return self.books.of(tracker_id).alarms
+
+    def of_all(self) -> Mapping[str, Alarm]:
+        """Return the alarms of the site that concern each tracker, by `alarm_id`."""
+        return {name: one for name, one in self.books.of(None).alarms.items() if concerns_all(one)}
 
     def shown(self, at: datetime) -> Shown:
         """Return the most urgent alarms and how many stand; the same object as before if none changed."""

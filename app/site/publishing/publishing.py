@@ -188,7 +188,8 @@ class Publisher:
     def told(self, snapshot: Snapshot) -> Snapshot:
         """Return a tracker with its state in a word and with what to know about it."""
         place = snapshot.tracker_id
-        return with_messages(snapshot, self._alarms.of(place), self._last.get(place))
+        alarms = {**self._alarms.of_all(), **self._alarms.of(place)}
+        return with_messages(snapshot, alarms, self._last.get(place))
 
     def _arrived(self) -> tuple[str, ...] | None:
         """Follow the site's trackers, in their order, and return those that came; None: none came or went."""

@@ -9,9 +9,9 @@ from app.tracker.memory.memory import TrackerState
 from app.tracker.state.snapshot import ActivityName
 from app.tracker.values.reason import Reason
 
+MOST_APART = timedelta(minutes=1)
+"""Two clocks that are not further apart agree: the sun moves by a quarter of a degree in this time."""
 FOLLOWS_THE_SUN = frozenset({ActivityName.TRACKING, ActivityName.SHOWING})
-MOST_WHILE_TRACKING = timedelta(minutes=1)
-"""So much may the clock be moved under a tracker that tracks: the sun moves by a quarter of a degree."""
 
 
 def against_another_location(
@@ -41,11 +41,11 @@ def following(doing: Mapping[str, ActivityName]) -> tuple[Reason, ...]:
 def against_another_clock(
     by: timedelta, doing: Mapping[str, tuple[ActivityName, bool]]
 ) -> tuple[Reason, ...]:
-    """Return which trackers forbid that the site's clock moves by so much.
+    """Return which trackers forbid that the site's clock moves by so much, none up to a minute.
 
     Of each is told what it does, and whether tracking is on: it may continue after a stow or a fault.
     """
-    return () if abs(by) <= MOST_WHILE_TRACKING else tuple(_led_by_the_clock(doing))
+    return () if abs(by) <= MOST_APART else tuple(_led_by_the_clock(doing))
 
 
 def _led_by_the_clock(doing: Mapping[str, tuple[ActivityName, bool]]) -> Iterator[Reason]:

@@ -7,7 +7,7 @@ from typing import Any
 
 import orjson
 
-from app.alarms.urgency import headline
+from app.alarms.urgency import own_headline
 from app.base.clock import Clock
 from app.link.messages import Update
 from app.tracker.state.snapshot import SiteSnapshot, Snapshot
@@ -129,7 +129,7 @@ class States:
 
 def _in_short(tracker: Snapshot) -> Snapshot:
     """Return a tracker as those are told who look at all of them."""
-    first = headline(tracker)
+    first = own_headline(tracker)
     return replace(tracker, actions={}, messages=() if first is None else (first,))
 
 

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from datetime import datetime, timedelta
 from typing import Any
 
+from app.base.instants import duration
 from app.base.message import N_, Message, say, with_format
 from app.base.zones import zone_of
 from app.tracker.values.actors import CONTROLLER, FORMERLY
@@ -46,18 +47,6 @@ def compass(azimuth_deg: float) -> str:
 def horizon(elevation_deg: float) -> str:
     """Return on which side of the horizon an elevation lies."""
     return CATALOGUE.get().said(N_("below the horizon") if elevation_deg < 0 else N_("above the horizon"))
-
-
-def duration(value: timedelta | float) -> str:
-    """Return a length of time such as `3 min`, `3 min 05 s` or `15 h 12 min`."""
-    total_s = round(value.total_seconds() if isinstance(value, timedelta) else value)
-    hours, rest = divmod(abs(total_s), 3600)
-    minutes, seconds = divmod(rest, 60)
-    if hours:
-        return say("{hours} h {minutes} min", hours=hours, minutes=with_format(minutes, "02d"))
-    if minutes and seconds:
-        return say("{minutes} min {seconds} s", minutes=minutes, seconds=with_format(seconds, "02d"))
-    return say("{minutes} min", minutes=minutes) if minutes else f"{seconds} s"
 
 
 def signed_seconds(value: float) -> str:

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from app.alarms.urgency import IN_DANGER, first_priority, headline
+from app.alarms.urgency import IN_DANGER, first_priority, own_headline
 from app.base.message import NOTHING, Message, Word, say, word
 from app.tracker.protections.words import Protection
 from app.tracker.settings.config import MountKind, TrackerConfig
@@ -156,7 +156,7 @@ def _color(priority: int) -> int:
 
 def _trouble(one: Snapshot) -> Message:
     """Return the first thing to know about a tracker; what its state says already is told with its cause."""
-    first = headline(one)
+    first = own_headline(one)
     if first is None:
         return NOTHING
     return first.message if first.code == one.state and first.message else first.title

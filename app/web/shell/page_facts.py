@@ -33,6 +33,7 @@ UNDER_TEST = (
 ON_ITS_WAY = (ShowPhase.RUNNING, ShowPhase.PAUSED)
 
 FAULT_LINK = ("#faults", N_("Go to reset"))
+CLOCK_LINK = ("/commissioning/clock", N_("Clock"))
 MESSAGE_LINKS = {
     ANY_FAULT: FAULT_LINK,
     "local": ("/service", N_("Service")),
@@ -41,7 +42,12 @@ MESSAGE_LINKS = {
     "config_rejected": ("/settings#rejected", N_("Settings")),
     "no_soft_limits": ("/commissioning/homing", N_("Homing")),
     "home_lost": ("/commissioning/homing", N_("Homing")),
-    "clock_untrusted": ("/commissioning/clock", N_("Clock")),
+    "clock_untrusted": CLOCK_LINK,
+    "clock_differs": CLOCK_LINK,
+    "clock_drifts": CLOCK_LINK,
+    "clock_implausible": CLOCK_LINK,
+    "clock_jumped": CLOCK_LINK,
+    "clock_off": CLOCK_LINK,
 }
 """Where a message about a tracker leads, below its own page, and what the button is called."""
 IN_PAGE = 2

@@ -15,6 +15,7 @@ from starlette.responses import HTMLResponse, RedirectResponse, Response
 
 from app.alarms.urgency import headline
 from app.base.build import VERSION
+from app.base.instants import duration
 from app.base.own import own_folder
 from app.tracker.mounts.capabilities import abilities
 from app.web import languages
@@ -37,7 +38,7 @@ def options_said(options: Iterable[tuple[object, str]]) -> tuple[tuple[object, s
 FILTERS: dict[str, Callable[..., Any]] = {
     "angle": formats.angle,
     "compass": formats.compass,
-    "duration": formats.duration,
+    "duration": duration,
     "signed_seconds": formats.signed_seconds,
     "decimals": formats.decimals,
     "word": formats.word,

@@ -9,6 +9,7 @@ from uuid import uuid4
 
 from pydantic import BaseModel
 
+from app.base.instants import duration
 from app.base.message import N_, Message, Word, join, say, with_format
 from app.base.zones import zone_of
 from app.link.messages import TrackerDetail
@@ -26,7 +27,7 @@ from app.web.charts.daychart import chart
 from app.web.features.control.mode import choice
 from app.web.features.shows.show_contexts import Preset, Verdict
 from app.web.shell.contexts import Link
-from app.web.shell.formats import ISO_DATE, duration, local, read_local
+from app.web.shell.formats import ISO_DATE, local, read_local
 from app.web.shell.forms import Typed
 
 NAMES = ("date", "start", "end", "minutes")

@@ -3,15 +3,13 @@
 from collections.abc import Iterator
 from datetime import datetime, timedelta
 
+from app.base.instants import duration
 from app.base.message import NOTHING, Message, say, with_format
 from app.sun.position import Algorithm, InstantRefused, Location, SunPosition, sun_position
-from app.tracker.access.location_change import against_another_clock
+from app.tracker.access.location_change import MOST_APART, against_another_clock
 from app.tracker.commands.commands import CommandRejected
 from app.tracker.state.snapshot import SiteSnapshot
-from app.web.shell.formats import duration, local
-
-MOST_APART = timedelta(minutes=1)
-"""The sun moves by a quarter of a degree in this time."""
+from app.web.shell.formats import local
 
 
 def clock_doubt(clock: datetime, device: datetime | None) -> Message:

@@ -1,0 +1,74 @@
+"""Each page tells what its device's clock shows; what differs is told on every page."""
+
+from datetime import timedelta
+
+import pytest
+
+from tests.web.desk import Desk
+from tests.web.sockets import Socket, connected
+
+APART = timedelta(hours=11, minutes=39)
+PAGES = ("", "/commissioning/clock", "/commissioning/run", "/settings", "/mast")
+
+
+async def look(desk: Desk, page: Socket, behind: timedelta, *, seconds: int, late_s: int = 0) -> None:
+    """Have a page ping once a second; the later ones come late by so much."""
+    for _ in range(seconds):
+        now = desk.plant.site.model.now()
+        sent = now - timedelta(seconds=late_s)
+        await page.send(type="ping", tc=sent.timestamp() * 1000, at=(sent - behind).timestamp() * 1000)
+        await page.next("pong")
+        await desk.forward(1)
+
+
+async def test_a_difference_is_told_on_every_page(desk: Desk) -> None:
+    await desk.plant.commission()
+    async with connected(desk.app, "tracker=T1") as page:
+        await look(desk, page, APART, seconds=6)
+        (alarm,) = desk.plant.alarms().items()
+        assert alarm[0] == "clock_differs"
+        assert "11 h 39 min ahead of the clock of the device used by local user" in alarm[1]
+        for path in PAGES:
+            shown = await desk.ask("GET", f"/trackers/T1{path}")
+            assert "11 h 39 min ahead of" in shown.text, path
+            assert 'data-priority="3"' in shown.text, path
+        clock = (await desk.ask("GET", "/trackers/T1/commissioning/clock")).text
+        assert 'data-live="site.clock.off_s" data-form="signed_seconds">+11 h 39 min<' in clock
+        assert "Clocks differ" in (await desk.ask("GET", "/alarms")).text
+        assert "Clocks differ" in (await desk.ask("GET", "/")).text
+
+        await look(desk, page, timedelta(0), seconds=33)
+        assert desk.plant.alarms() == {}
+
+
+async def test_what_is_not_over_a_minute_off_is_not_told_to_the_controller(desk: Desk) -> None:
+    await desk.plant.commission()
+    async with connected(desk.app, "tracker=T1") as page:
+        await look(desk, page, timedelta(seconds=59), seconds=6)
+    assert desk.plant.site.model.timekeeper.devices.furthest() is None
+
+
+async def test_a_ping_that_was_held_up_tells_nothing_of_a_clock(desk: Desk) -> None:
+    await desk.plant.commission()
+    async with connected(desk.app, "tracker=T1") as page:
+        await look(desk, page, timedelta(0), seconds=2)
+        await look(desk, page, timedelta(0), seconds=4, late_s=90)
+    assert desk.plant.site.model.timekeeper.devices.furthest() is None
+
+
+@pytest.mark.parametrize("at", [-1, "now", 1e15, True, float("inf")])
+async def test_no_clock_that_cannot_be_is_understood(desk: Desk, at: object) -> None:
+    async with connected(desk.app, "tracker=T1") as page:
+        await page.send(type="ping", tc=0, at=at)
+        assert (await page.next("problem"))["status"] == 422
+
+
+@pytest.mark.parametrize("at", [0, 1e14, None])
+async def test_the_ends_of_what_a_clock_can_show(desk: Desk, at: float | None) -> None:
+    await desk.plant.commission()
+    async with connected(desk.app, "tracker=T1") as page:
+        for second in range(6):
+            await page.send(type="ping", tc=second * 1000, at=at)
+            await page.next("pong")
+            await desk.forward(1)
+    assert ("clock_differs" in desk.plant.alarms()) is (at is not None)
