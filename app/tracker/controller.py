@@ -59,6 +59,7 @@ from app.tracker.state.setpoints import forget_correction, forget_setpoints, not
 from app.tracker.state.snapshot import ActivityName, Event, EventKind, Snapshot
 from app.tracker.state.transitions import begin, leave
 from app.tracker.state.waiting import wait_for
+from app.tracker.supervision.continuing import goes_on
 from app.tracker.supervision.home_shift import forget
 from app.tracker.supervision.machine_guard import is_silent, watch_machine
 from app.tracker.supervision.protect import (
@@ -175,6 +176,11 @@ class Controller:
         Unless `asked`, `actions` are left out.
         """
         return report.snapshot(self._state, at, now or self._state.now, asked=asked)
+
+    @property
+    def continues(self) -> bool:
+        """Return whether tracking goes on with nobody asked."""
+        return goes_on(self._state)
 
     @property
     def standing(self) -> Standing:

@@ -5,7 +5,6 @@ from datetime import datetime, timedelta
 from app.base.message import N_, say
 from app.tracker.activities import tracking
 from app.tracker.activities.faulted import reset_fault
-from app.tracker.protections.fault_classes import CLASSES
 from app.tracker.settings.mechanics import Recovery as Recovers
 from app.tracker.settings.mechanics import RecoveryPolicy
 from app.tracker.state.activity import Faulted, Holding
@@ -13,6 +12,7 @@ from app.tracker.state.controller_state import ControllerState
 from app.tracker.state.parts import Recovery
 from app.tracker.state.positioning import at_rest
 from app.tracker.state.snapshot import EventKind
+from app.tracker.supervision.continuing import fault_code, recovery_policy
 from app.tracker.values.motion import Feedback
 
 HOUR = timedelta(hours=1)
@@ -23,10 +23,10 @@ def recover(state: ControllerState, feedback: Feedback) -> None:
     """Clear a fault that its policy lets clear by itself, and go on tracking after one that was cleared."""
     if state.recovery.goes_on:
         _go_on(state)
-    code, before = _fault(state), state.recovery
+    code, before = fault_code(state), state.recovery
     if code is None and before.fault is None:
         return
-    policy = _policy(state, code) if at_rest(feedback) and not _asks_already(state) else None
+    policy = recovery_policy(state) if at_rest(feedback) and not _asks_already(state) else None
     state.recovery = after = watched(before, code, policy, state.now)
     if policy is None or after.resets is before.resets:
         return
@@ -50,25 +50,6 @@ def watched(before: Recovery, fault: str | None, policy: RecoveryPolicy | None, 
     if policy.kind is Recovers.LIMITED and len(recent) >= policy.times_per_hour:
         return waits
     return Recovery(fault, now, (*recent, now)[-MOST_RESETS:], goes_on=True)
-
-
-def _fault(state: ControllerState) -> str | None:
-    """Return the code of the latched fault, or that the drive was lost and tracking waits for that."""
-    if isinstance(state.activity, Faulted):
-        return state.activity.reason.code
-    wait = state.waiting.reason
-    if wait is None or wait.code != "drive_lost" or not isinstance(state.activity, Holding):
-        return None
-    return wait.code
-
-
-def _policy(state: ControllerState, code: str | None) -> RecoveryPolicy | None:
-    """Return the policy by which a fault is left by itself now, None where a person has to."""
-    fault = None if code is None else CLASSES.get(code)
-    if fault is None or state.memory.lock is not None or state.memory.service is not None:
-        return None
-    policy = state.config.machine.recovery.of(fault)
-    return policy if policy.kind in (Recovers.LIMITED, Recovers.UNLIMITED) else None
 
 
 def _asks_already(state: ControllerState) -> bool:

@@ -4,6 +4,7 @@ import { start as startControl } from "./control.js";
 import { start as startAlarms } from "./alarms.js";
 import { start as startAsking } from "./asked.js";
 import { start as startErrors } from "./errors.js";
+import "./hold.js";
 import { start as startLive } from "./live.js";
 import { start as startMessages } from "./messages.js";
 import { start as startOrders } from "./orders.js";

@@ -5,7 +5,12 @@ from datetime import timedelta
 import pytest
 
 from app.link.messages import SetClock
-from app.tracker.access.location_change import against_another_clock
+from app.tracker.access.location_change import (
+    Doing,
+    against_another_clock,
+    against_other_settings,
+    led_by_the_location,
+)
 from app.tracker.commands.commands import CommandRejected, SelectMode, Stop, Track
 from app.tracker.state.snapshot import ActivityName
 from app.tracker.values.mode import Mode
@@ -59,14 +64,27 @@ async def test_half_a_minute_is_set_while_tracking_and_taken_back(plant: Plant) 
 
 
 @pytest.mark.parametrize("activity", list(ActivityName))
-def test_who_is_led_by_the_clock(activity: ActivityName) -> None:
+def test_who_is_led_by_the_clock_and_by_the_location(activity: ActivityName) -> None:
     always = {ActivityName.TRACKING, ActivityName.SHOWING}
     later = {ActivityName.STOWING, ActivityName.STOWED, ActivityName.FAULTED}
-    for tracking_on in (False, True):
-        found = against_another_clock(-AHEAD, {"T1": (activity, tracking_on), "T2": (activity, tracking_on)})
-        led = activity in always or (tracking_on and activity in later)
-        assert len(found) == (2 if led else 0)
-        assert all(key in one.message + one.hint for key, one in zip(("T1", "T2"), found, strict=False))
-        assert against_another_clock(timedelta(minutes=1), {"T1": (activity, tracking_on)}) == ()
-        is_stowed = activity in {ActivityName.STOWING, ActivityName.STOWED}
-        assert all(one.hint.startswith("Wait until") is is_stowed for one in found), "nobody ends a stow"
+    for tracking_on, continues in ((False, False), (True, False), (True, True)):
+        now = dict.fromkeys(("T1", "T2"), Doing(activity, tracking_on, continues))
+        led = activity in always or (tracking_on and activity in later) or continues
+        for found in (against_another_clock(-AHEAD, now), led_by_the_location(now)):
+            assert len(found) == (2 if led else 0)
+            assert all(key in one.message + one.hint for key, one in zip(("T1", "T2"), found, strict=False))
+            is_stowed = activity in {ActivityName.STOWING, ActivityName.STOWED}
+            assert all(one.hint.startswith("Wait until") is is_stowed for one in found), "nobody ends a stow"
+        assert against_another_clock(timedelta(minutes=1), now) == ()
+
+
+@pytest.mark.parametrize("activity", list(ActivityName))
+def test_who_takes_no_other_settings(activity: ActivityName) -> None:
+    at_rest = activity in {ActivityName.HOLDING, ActivityName.FAULTED}
+    found = against_other_settings("T1", Doing(activity, tracking_on=True, continues=False), is_moving=False)
+    assert (found is None) is at_rest
+    for continues, is_moving in ((True, False), (False, True)):
+        now = Doing(activity, tracking_on=True, continues=continues)
+        refused = against_other_settings("T1", now, is_moving=is_moving)
+        assert refused is not None
+        assert (refused.code, refused.hint) == ("tracker_busy", "Stop T1 first.")

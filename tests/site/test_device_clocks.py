@@ -85,7 +85,7 @@ async def test_it_is_no_message_of_one_tracker_among_others(tracks: Plant) -> No
 
 async def test_ntp_knows_better_than_a_device(tracks: Plant) -> None:
     tracks.site.model.timekeeper.offset.kernel = KernelClock(synchronised=True)
-    tracks.site.model.timekeeper._kernel = lambda: KernelClock(synchronised=True)  # noqa: SLF001
+    tracks.site.model.timekeeper._kernel = lambda: KernelClock(synchronised=True)
     await look(tracks, APART_S)
     assert tracks.latest().clock.off_s == 0.0
     (warning,) = tracks.latest().clock.warnings

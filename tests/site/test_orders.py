@@ -81,6 +81,7 @@ def test_everything_is_recorded_but_measurements_readings_and_signs_of_life() ->
         "report_weather",
         "check_connection",
         "renew_control",
+        "report_device_clock",
     }
     assert kinds_where(lambda spec: spec.held) == {"jog", "end_jog"}
 

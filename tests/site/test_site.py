@@ -208,7 +208,7 @@ async def test_a_moving_tracker_is_neither_changed_nor_removed(plant: Plant) -> 
     await plant.forward(seconds=0.1)
 
     for command in (RemoveTracker("T1"), ConfigureTracker(TrackerConfig("T1", "Other"))):
-        with pytest.raises(CommandRejected, match="not at standstill"):
+        with pytest.raises(CommandRejected, match="is being jogged"):
             await plant.ask(command)
 
 

@@ -447,6 +447,25 @@ def test_a_lost_drive_is_tracked_again_if_its_policy_says_so() -> None:
     assert plant.happened(EventKind.TRACKING_RESUMED)
 
 
+@pytest.mark.parametrize("kind", [Recovery.NONE, Recovery.SERVICE, Recovery.LIMITED, Recovery.UNLIMITED])
+def test_a_tracker_that_goes_on_by_itself_says_so(kind: Recovery) -> None:
+    plant = recovering(kind)
+    assert plant.snapshot.continues, "it tracks"
+    plant.cut = True
+    plant.forward(5.0)
+    recovers = kind in (Recovery.LIMITED, Recovery.UNLIMITED)
+    assert plant.activity is ActivityName.HOLDING
+    assert plant.snapshot.continues is recovers
+    plant.blow(irradiance_wm2=0.0).forward(5.0)
+    shown = plant.snapshot.protection
+    assert shown is not None
+    assert ("Tracking continues automatically once" in shown.reason.hint) is recovers
+    assert ("Tracking needs the operator" in shown.reason.hint) is not recovers
+    plant.ask(Stop())
+    plant.forward(0.2)
+    assert not plant.snapshot.continues
+
+
 def test_a_fault_that_needs_service_is_cleared_in_service_only() -> None:
     plant = recovering(Recovery.SERVICE)
     block_and_free(plant)

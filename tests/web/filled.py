@@ -1,6 +1,8 @@
 """A form of a page as a browser sends it: every field with what stands in it, and what is typed over that."""
 
+import re
 from collections.abc import Mapping
+from html import unescape
 
 import httpx
 
@@ -45,3 +47,13 @@ async def filled(
     shown = values_of((await client.get(page)).text, action or page)
     assert shown, f"{page} has no form {action or page}"
     return {**shown, **(typed or {})}
+
+
+CONFIRMED = re.compile(r'name="confirmed"\s+value="([^"]+)"')
+
+
+def confirmed_in(question: str) -> dict[str, str]:
+    """Return what the button of a question sends, which stands for exactly what it asks."""
+    found = CONFIRMED.search(question)
+    assert found is not None, question
+    return {"confirmed": unescape(found[1])}

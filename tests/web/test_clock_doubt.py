@@ -13,6 +13,7 @@ from app.link.messages import SetClock
 from app.sun.position import Algorithm, sun_position
 from app.tracker.memory.memory import ClockSetting
 from tests.fakes import FakeMachine, fake_app, serving
+from tests.web.filled import confirmed_in
 
 PAGE = "/trackers/T1/commissioning/clock"
 CLOCK = "/api/v1/site/clock"
@@ -32,9 +33,8 @@ async def test_the_system_clock_is_asked_about_with_the_difference(
     asked = await client.post(f"{PAGE}/system", data=device, headers=HTMX)
     assert asked.status_code == 422
     assert "The controller&#39;s clock is 11 h 39 min ahead of this device&#39;s clock." in asked.text
-    assert 'name="confirmed" value="yes"' in asked.text
     assert not orders(machine)
-    answer = await client.post(f"{PAGE}/system", data=device | {"confirmed": "yes"}, headers=HTMX)
+    answer = await client.post(f"{PAGE}/system", data=device | confirmed_in(asked.text), headers=HTMX)
     assert answer.status_code == 204
     assert [one.source for one in orders(machine)] == ["system"]
 
@@ -134,7 +134,12 @@ async def test_copying_a_device_asks_by_how_much_and_where_the_sun_stands(
     assert "Compare with a third clock." in asked.text
     assert "data-hold" in asked.text
     assert not orders(machine)
-    done = await client.post(f"{PAGE}/device", data=device | {"confirmed": "yes"}, headers=HTMX)
+    other = {"at": (new - timedelta(hours=2)).isoformat()} | confirmed_in(asked.text)
+    assert (await client.post(f"{PAGE}/device", data=other, headers=HTMX)).status_code == 422, "not asked"
+    for wrong in ("yes", "", "1 2", "nan", "1e400"):
+        refused = await client.post(f"{PAGE}/device", data=device | {"confirmed": wrong}, headers=HTMX)
+        assert refused.status_code == 422, wrong
+    done = await client.post(f"{PAGE}/device", data=device | confirmed_in(asked.text), headers=HTMX)
     assert (done.status_code, [one.at for one in orders(machine)]) == (204, [new])
 
 

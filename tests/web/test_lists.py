@@ -99,6 +99,7 @@ LEFT = {
     "_protection.html": "values of this moment; the trends have them as curves and as a file",
     "tracker.html": "values of this moment; the trends have them as curves and as a file",
     "components.html": "specimens of the parts that pages are made of",
+    "_review.html": "what a form would change, asked before it is saved",
     "machine.html": "fields of a form; the page Settings has all settings of a tracker as a file",
     "network.html": "where to go on while a new address is tried",
     "run.html": "the five steps; the commissioning record has them",

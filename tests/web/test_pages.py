@@ -15,7 +15,7 @@ from app.tracker.values.mode import Mode
 from app.tracker.values.reason import Reason
 from app.web.shell.formats import compass, shown
 from tests.fakes import FakeMachine
-from tests.web.filled import filled
+from tests.web.filled import confirmed_in, filled
 
 T1 = "/trackers/T1"
 HTMX = {"HX-Request": "true", "HX-Request-Type": "partial"}
@@ -79,7 +79,9 @@ async def test_clock_is_kept_copied_or_typed(machine: FakeMachine, client: httpx
     root, sure = f"{T1}/commissioning/clock", {"confirmed": "yes"}
     machine.rest()
     await client.post(f"{root}/system")
-    await client.post(f"{root}/device", data={"at": "2026-06-21T09:00:00.000Z"} | sure)
+    device = {"at": "2026-06-21T09:00:00.000Z"}
+    question = (await client.post(f"{root}/device", data=device)).text
+    await client.post(f"{root}/device", data=device | confirmed_in(question))
     typed = {"date": "2026-06-21", "time": "12:00:30", "time_zone": "Europe/Istanbul"} | sure
     await client.post(root, data=typed)
     system, device, manual = sent(machine, SetClock)

@@ -131,7 +131,7 @@ async def test_a_location_that_cannot_be_saved_is_refused_before_it_is_asked_abo
     answer = await client.post(PAGE, data=typed, headers=HTMX)
     assert answer.status_code == 409
     assert "T2 is tracking the sun for the present location." in answer.text
-    assert "Stop T2 first." in answer.text
+    assert "End tracking of T2 first." in answer.text
     assert "place-doubts" not in answer.text
 
     machine.rest()

@@ -82,7 +82,9 @@ async def test_every_reader_of_a_form_takes_numbers_so(
 ) -> None:
     page, action, stored = FIELDS[name]
     if name == "slope":
-        machine.trackers["T1"].config = mounted(config(machine), MountKind.HORIZONTAL_SINGLE_AXIS, 41.0)
+        tracker = machine.trackers["T1"]
+        tracker.config = mounted(tracker.config, MountKind.HORIZONTAL_SINGLE_AXIS, 41.0)
+        tracker.memory = replace(tracker.memory, home=None)
     rest = {"rows": "yes"} if name == "slope" else {}
     for text in ("—1.5", "1 degree") + (("1,200",) if name in ("altitude", "azimuth_gear") else ()):
         before = machine.site, config(machine)

@@ -18,6 +18,7 @@ from app.site.loop.link_quality import RoundTrips
 from app.site.loop.scheduler import Scheduler, Slot
 from app.site.loop.tick_lateness import TickCounter
 from app.tracker.access.interlocks import Action
+from app.tracker.access.location_change import Doing
 from app.tracker.commands.commands import Command
 from app.tracker.commissioning.steps import Standing, standing_of
 from app.tracker.controller import Controller
@@ -112,6 +113,12 @@ class TrackerLoop:
     def activity(self) -> ActivityName:
         """Return what the tracker is doing; a broken one is faulted."""
         return ActivityName.FAULTED if self.broken is not None else self.controller.activity
+
+    @property
+    def doing(self) -> Doing:
+        """Return what the tracker does, and whether it goes on tracking with nobody asked."""
+        continues = self.broken is None and self.controller.continues
+        return Doing(self.activity, self.memory.tracking_on, continues)
 
     def take_changed(self) -> bool:
         """Return whether the latches changed since this was last asked."""
@@ -372,6 +379,7 @@ def _broken_snapshot(last: Snapshot, at: datetime, broken: Reason, *, asked: boo
         off_sun_deg=None,
         in_position=False,
         approaching=False,
+        continues=False,
         azimuth=None,
         elevation=None,
         show=None,

@@ -141,7 +141,7 @@ async def restore_drive(model: SiteModel, wanted: RestoreDrive, actor: str) -> t
 async def check_connection(model: SiteModel, wanted: CheckConnection, actor: str) -> tuple[Event, ...]:
     """Read a drive while the tracker stands still, change nothing, and keep what it answered."""
     loop = model.tracker(wanted.tracker_id)
-    tracker_setup.refuse_while_busy(model, loop)
+    tracker_setup.refuse_while_busy(loop)
     check_drive(wanted.drive)
     readings = _judged_fit(
         model, replace(loop.config, drive=wanted.drive), await model.checks.look(wanted.drive)
@@ -176,7 +176,7 @@ def _judged_fit(model: SiteModel, config: TrackerConfig, readings: DriveReadings
 def _judged(model: SiteModel, tracker_id: str, kind: ProofKind) -> tuple[TrackerLoop, ProofMove]:
     """Return a tracker at rest and its finished move of this kind, or raise `CommandRejected`."""
     loop = model.tracker(tracker_id)
-    tracker_setup.refuse_while_busy(model, loop)
+    tracker_setup.refuse_while_busy(loop)
     move = loop.memory.proofs.move
     if move is None or move.kind is not kind or move.to_deg is None:
         raise CommandRejected(NOTHING_TO_JUDGE)

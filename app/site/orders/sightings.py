@@ -9,9 +9,9 @@ from app.site.loop.loop import TrackerLoop
 from app.site.orders.tracker_setup import refuse_while_busy
 from app.site.state.model import SiteModel
 from app.tracker.commands.commands import CommandRejected
-from app.tracker.commissioning.alignment import fit
+from app.tracker.commissioning.alignment import pointing_of
 from app.tracker.commissioning.sun_clock import clock_error
-from app.tracker.memory.memory import Pointing, Sighting
+from app.tracker.memory.memory import Sighting
 from app.tracker.mounts.capabilities import abilities
 from app.tracker.settings.config import TrackerConfig
 from app.tracker.state.snapshot import Event, EventKind
@@ -118,10 +118,10 @@ def _no_sightings(config: TrackerConfig) -> tuple[Reason, ...]:
 async def apply(model: SiteModel, given: ApplySightings, actor: str) -> tuple[Event, ...]:
     """Correct with what the kept sightings fit to; none: forget the correction."""
     loop = model.tracker(given.tracker_id)
-    refuse_while_busy(model, loop)
+    refuse_while_busy(loop)
     if given.keep and (reasons := _no_sightings(loop.config)):
         raise CommandRejected(*reasons)
-    pointing = fit(given.keep) if given.keep else Pointing()
+    pointing = pointing_of(given.keep)
     message = (
         say("The mounting correction was fitted to {keep} sightings.", keep=len(given.keep))
         if given.keep

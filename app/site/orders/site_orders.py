@@ -27,7 +27,7 @@ from app.site.orders import tracker_orders
 from app.site.state.model import SiteModel
 from app.site.state.validation import check_name, check_time_zone
 from app.store.store import PlannedShow, Writer
-from app.tracker.access.location_change import against_another_clock, following
+from app.tracker.access.location_change import against_another_clock, led_by_the_location
 from app.tracker.commands.commands import CommandRejected
 from app.tracker.memory.memory import Confirmation, SiteState, StepName
 from app.tracker.memory.recording import RecordingInfo
@@ -64,7 +64,7 @@ async def set_location(model: SiteModel, command: SetLocation, actor: str) -> tu
     """Set where the site is, and its time zone."""
     state = replace(model.state, time_zone=check_time_zone(command.time_zone))
     if command.location != state.location:
-        if reasons := following({tracker_id: loop.activity for tracker_id, loop in model.loops.items()}):
+        if reasons := led_by_the_location(model.doing()):
             raise CommandRejected(*reasons)
         state = replace(state, location=command.location, location_revision=state.location_revision + 1)
     given = Confirmation(model.now(), actor, state.location_revision)
@@ -98,8 +98,7 @@ async def set_clock(model: SiteModel, command: SetClock, actor: str) -> tuple[Ev
     """Choose the clock of the site, or raise `CommandRejected` where it would move a panel that tracks."""
     setting = model.timekeeper.choose(command.source, command.at, actor)
     moved = timedelta(seconds=setting.offset_s - model.timekeeper.setting.offset_s)
-    doing = {key: (loop.activity, loop.memory.tracking_on) for key, loop in model.loops.items()}
-    if reasons := against_another_clock(moved, doing):
+    if reasons := against_another_clock(moved, model.doing()):
         raise CommandRejected(*reasons)
     zone = model.state.time_zone if command.time_zone is None else check_time_zone(command.time_zone)
     state = replace(model.state, clock=setting, time_zone=zone)

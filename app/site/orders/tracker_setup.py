@@ -12,6 +12,7 @@ from app.site.orders.line_room import refuse_starved_drive
 from app.site.recording.auditing import as_action
 from app.site.state.model import SiteModel
 from app.site.state.validation import check_config, with_clean_names
+from app.tracker.access.location_change import against_other_settings
 from app.tracker.commands.commands import CommandRejected
 from app.tracker.memory.memory import Pointing, StepName, TrackerMemory, TrackerState
 from app.tracker.motion.limit_change import Standing, review
@@ -74,7 +75,7 @@ async def configure(model: SiteModel, config: TrackerConfig, actor: str) -> tupl
     loop = model.tracker(config.tracker_id)
     config = with_clean_names(config)
     check_config(config)
-    refuse_while_busy(model, loop)
+    refuse_while_busy(loop)
     _refuse_unsafe_limits(loop, config)
     _refuse_shared_drive(model, config)
     old = loop.config
@@ -184,7 +185,7 @@ async def remove(model: SiteModel, command: RemoveTracker, actor: str) -> tuple[
     """Remove a tracker that stands still."""
     tracker_id = command.tracker_id
     loop = model.tracker(tracker_id)
-    refuse_while_busy(model, loop)
+    refuse_while_busy(loop)
     event = model.event(
         EventKind.TRACKER_REMOVED,
         say("Tracker {name} was removed.", name=loop.config.name),
@@ -216,17 +217,10 @@ def _refuse_unsafe_limits(loop: TrackerLoop, config: TrackerConfig) -> None:
         raise CommandRejected(*found.against)
 
 
-def refuse_while_busy(model: SiteModel, loop: TrackerLoop) -> None:
-    """Raise `CommandRejected` unless the tracker stands still and means to."""
-    if not model.rests(loop):
-        name = loop.config.tracker_id
-        raise CommandRejected(
-            Reason(
-                "tracker_busy",
-                say("{name} is not at standstill.", name=name),
-                say("Stop {name} first.", name=name),
-            )
-        )
+def refuse_while_busy(loop: TrackerLoop) -> None:
+    """Raise `CommandRejected` unless the tracker stands still and stays where it is."""
+    if reason := against_other_settings(loop.config.tracker_id, loop.doing, is_moving=loop.moving):
+        raise CommandRejected(reason)
 
 
 def _refuse_shared_drive(model: SiteModel, config: TrackerConfig) -> None:

@@ -26,19 +26,18 @@ from app.site.weather.met_poll import MetPoll, Station, StationReader
 from app.site.weather.sky import Sky
 from app.site.weather.weather import WeatherStation
 from app.sun.position import Algorithm, SunPosition
+from app.tracker.access.location_change import AT_REST, Doing
 from app.tracker.memory.memory import MetStation, SiteState, TrackerState
 from app.tracker.memory.observation import Observation
 from app.tracker.protections.guarding import wind_of
 from app.tracker.protections.wind_stow import is_high
 from app.tracker.protections.words import Protection
 from app.tracker.settings.config import DriveKind, TrackerConfig
-from app.tracker.state.snapshot import ActivityName, Event, EventKind, Snapshot
+from app.tracker.state.snapshot import Event, EventKind, Snapshot
 from app.tracker.values.motion import Feedback
 from app.tracker.weather.played_weather import SECOND_MAST, second_mast
 from app.tracker.weather.simulated_weather import SimulatedStation
 from app.tracker.weather.weather import Weather
-
-AT_REST = {ActivityName.HOLDING, ActivityName.FAULTED}
 
 
 @dataclass(slots=True)
@@ -131,6 +130,10 @@ class SiteModel:
     def rests(self, loop: TrackerLoop) -> bool:
         """Return whether a tracker neither moves nor means to."""
         return not loop.moving and loop.activity in AT_REST
+
+    def doing(self) -> dict[str, Doing]:
+        """Return what each tracker does, and whether it goes on tracking with nobody asked."""
+        return {tracker_id: loop.doing for tracker_id, loop in self.loops.items()}
 
     def observe(self, config: TrackerConfig, feedback: Feedback | None) -> Observation:
         """Return everything one tick of one tracker may depend on."""

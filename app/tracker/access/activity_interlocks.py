@@ -18,12 +18,15 @@ def while_(*allowed: ActivityName) -> Condition:
         doing = NAMES[type(state.activity)]
         if doing in allowed or doing is ActivityName.FAULTED:
             return None
-        words, hint = _DOING[doing]
-        return Reason(
-            f"busy_{doing}", say("{name} {words}.", name=state.config.name, words=word(words)), hint
-        )
+        return busy(f"busy_{doing}", state.config.name, doing)
 
     return condition
+
+
+def busy(code: str, name: str, doing: ActivityName) -> Reason:
+    """Return what a tracker, which is not faulted, is doing, and what to do first."""
+    words, hint = _DOING[doing]
+    return Reason(code, say("{name} {words}.", name=name, words=word(words)), hint)
 
 
 def showing(*phases: ShowPhase) -> Condition:

@@ -1,72 +1,127 @@
-"""What forbids another location or clock: settings that are locked, trackers that follow the sun."""
+"""What forbids another location, clock, or setting: a lock, or a tracker that moves or is led by it."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 from datetime import timedelta
+from enum import Enum, auto
+from typing import NamedTuple
 
-from app.base.message import say
+from app.base.message import Message, say
+from app.tracker.access.activity_interlocks import busy
 from app.tracker.access.local_locks import locked_settings
 from app.tracker.memory.memory import TrackerState
-from app.tracker.state.snapshot import ActivityName
+from app.tracker.state.snapshot import ActivityName, Snapshot
 from app.tracker.values.reason import Reason
 
 MOST_APART = timedelta(minutes=1)
 """Two clocks that are not further apart agree: the sun moves by a quarter of a degree in this time."""
-FOLLOWS_THE_SUN = frozenset({ActivityName.TRACKING, ActivityName.SHOWING})
+
+
+AT_REST = frozenset({ActivityName.HOLDING, ActivityName.FAULTED})
+"""What a tracker does that neither moves nor means to."""
+
+
+class Doing(NamedTuple):
+    """What a tracker does, whether tracking is on, and whether it goes on with that by itself."""
+
+    activity: ActivityName
+    tracking_on: bool
+    continues: bool
+
+
+def doing(trackers: Iterable[Snapshot]) -> dict[str, Doing]:
+    """Return what trackers do, by their ids."""
+    return {one.tracker_id: Doing(one.activity, one.tracking_on, one.continues) for one in trackers}
+
+
+class _Led(Enum):
+    """How a tracker is led by location and clock."""
+
+    TRACKS = auto()
+    SHOWS = auto()
+    CONTINUES = auto()
 
 
 def against_another_location(
-    trackers: Mapping[str, TrackerState], doing: Mapping[str, ActivityName]
+    trackers: Mapping[str, TrackerState], now: Mapping[str, Doing]
 ) -> tuple[Reason, ...]:
     """Return why the location of a site with these trackers, which do this now, cannot be changed.
 
     The location is locked with any tracker, because all of them aim by it.
     """
     locks = (locked_settings(one.config, one.memory) for one in trackers.values())
-    return tuple(lock for lock in locks if lock is not None) or following(doing)
+    return tuple(lock for lock in locks if lock is not None) or led_by_the_location(now)
 
 
-def following(doing: Mapping[str, ActivityName]) -> tuple[Reason, ...]:
-    """Return which trackers follow the sun of the present location."""
+def led_by_the_location(now: Mapping[str, Doing]) -> tuple[Reason, ...]:
+    """Return which trackers follow the sun of the present location, or may do so with nobody asked."""
     return tuple(
-        Reason(
-            "follows_the_sun",
-            say("{tracker_id} is tracking the sun for the present location.", tracker_id=tracker_id),
-            say("Stop {tracker_id} first.", tracker_id=tracker_id),
-        )
-        for tracker_id, activity in doing.items()
-        if activity in FOLLOWS_THE_SUN
+        Reason("follows_the_sun", _by_location(tracker_id, led), hint) for tracker_id, led, hint in _led(now)
     )
 
 
-def against_another_clock(
-    by: timedelta, doing: Mapping[str, tuple[ActivityName, bool]]
-) -> tuple[Reason, ...]:
-    """Return which trackers forbid that the site's clock moves by so much, none up to a minute.
+def against_another_clock(by: timedelta, now: Mapping[str, Doing]) -> tuple[Reason, ...]:
+    """Return which trackers forbid that the site's clock moves by so much, none up to a minute."""
+    if abs(by) <= MOST_APART:
+        return ()
+    return tuple(
+        Reason("follows_the_clock", _by_clock(tracker_id, led), hint) for tracker_id, led, hint in _led(now)
+    )
 
-    Of each is told what it does, and whether tracking is on: it may continue after a stow or a fault.
-    """
-    return () if abs(by) <= MOST_APART else tuple(_led_by_the_clock(doing))
+
+def against_other_settings(tracker_id: str, now: Doing, *, is_moving: bool) -> Reason | None:
+    """Return why a tracker, which does this now, takes no other settings: it moves or may do so."""
+    code, stop = "tracker_busy", say("Stop {tracker_id} first.", tracker_id=tracker_id)
+    if now.activity not in AT_REST:
+        return replace(busy(code, tracker_id, now.activity), hint=stop)
+    if is_moving:
+        return Reason(code, say("{name} is not at standstill.", name=tracker_id), stop)
+    if now.continues:
+        return Reason(code, _by_location(tracker_id, _Led.CONTINUES), stop)
+    return None
 
 
-def _led_by_the_clock(doing: Mapping[str, tuple[ActivityName, bool]]) -> Iterator[Reason]:
-    for tracker_id, (activity, tracking_on) in doing.items():
+def _led(now: Mapping[str, Doing]) -> Iterator[tuple[str, _Led, Message]]:
+    """Yield the trackers that are led, how, and what to do first."""
+    for tracker_id, (activity, tracking_on, continues) in now.items():
         stop = say("Stop {tracker_id} first.", tracker_id=tracker_id)
         match activity:
             case ActivityName.TRACKING:
-                text = say("{tracker_id} is tracking the sun by the present clock.", tracker_id=tracker_id)
-                hint = say("End tracking of {tracker_id} first.", tracker_id=tracker_id)
-                yield Reason("follows_the_clock", text, hint)
+                end = say("End tracking of {tracker_id} first.", tracker_id=tracker_id)
+                yield tracker_id, _Led.TRACKS, end
             case ActivityName.SHOWING:
-                text = say("{tracker_id} is running a show by the present clock.", tracker_id=tracker_id)
-                yield Reason("follows_the_clock", text, stop)
-            case ActivityName.STOWING | ActivityName.STOWED | ActivityName.FAULTED if tracking_on:
-                text = say(
-                    "{tracker_id} may continue tracking automatically by the present clock.",
-                    tracker_id=tracker_id,
-                )
+                yield tracker_id, _Led.SHOWS, stop
+            case ActivityName.STOWING | ActivityName.STOWED if tracking_on:
                 wait = say(
                     "Wait until {tracker_id} is tracking again, then end tracking.", tracker_id=tracker_id
                 )
-                yield Reason("follows_the_clock", text, stop if activity is ActivityName.FAULTED else wait)
+                yield tracker_id, _Led.CONTINUES, wait
+            case ActivityName.FAULTED if tracking_on:
+                yield tracker_id, _Led.CONTINUES, stop
+            case _ if continues:
+                yield tracker_id, _Led.CONTINUES, stop
             case _:
                 pass
+
+
+def _by_location(tracker_id: str, led: _Led) -> Message:
+    match led:
+        case _Led.TRACKS:
+            return say("{tracker_id} is tracking the sun for the present location.", tracker_id=tracker_id)
+        case _Led.SHOWS:
+            return say("{tracker_id} is running a show.", tracker_id=tracker_id)
+        case _Led.CONTINUES:
+            return say("{tracker_id} may continue tracking automatically.", tracker_id=tracker_id)
+
+
+def _by_clock(tracker_id: str, led: _Led) -> Message:
+    match led:
+        case _Led.TRACKS:
+            return say("{tracker_id} is tracking the sun by the present clock.", tracker_id=tracker_id)
+        case _Led.SHOWS:
+            return say("{tracker_id} is running a show by the present clock.", tracker_id=tracker_id)
+        case _Led.CONTINUES:
+            return say(
+                "{tracker_id} may continue tracking automatically by the present clock.",
+                tracker_id=tracker_id,
+            )

@@ -205,6 +205,11 @@ def _zero_mistakes(sighting: Sighting, declination_deg: float | None) -> Iterato
     yield 4, Cause(Mistake.BOTH_ZEROS, say("{message} Repeat step 3.", message=message), 0.0)
 
 
+def pointing_of(sightings: Sequence[Sighting]) -> Pointing:
+    """Return the correction that sightings fit to, none without any; raises as `fit` does."""
+    return fit(sightings) if sightings else Pointing()
+
+
 def fit(sightings: Sequence[Sighting]) -> Pointing:
     """Return the pointing correction that puts the sightings' suns on the axis angles read, least squares.
 

@@ -11,6 +11,7 @@ from app.tracker.settings.config import TrackerConfig
 from app.tracker.settings.declared import More, declared
 from app.tracker.values.reason import Reason
 
+TARGET_MOVES = "target_moves"
 REVIEWED = tuple(one for one in declared(AxisConfig).values() if one.setting.more is not None)
 """What gives an axis more room or speed."""
 
@@ -42,11 +43,16 @@ class Difference:
 
 @dataclass(frozen=True, slots=True)
 class LimitReview:
-    """What a change of limits or speeds asks: `against` forbids it now, `doubts` are to be confirmed."""
+    """What a change of limits, speeds or aim asks: `against` forbids it now, `doubts` are to be confirmed."""
 
     differences: tuple[Difference, ...] = ()
     against: tuple[Reason, ...] = ()
     doubts: tuple[Reason, ...] = ()
+
+    @property
+    def moves_target(self) -> bool:
+        """Return whether the panel would be aimed elsewhere."""
+        return any(one.code == TARGET_MOVES for one in self.doubts)
 
     @property
     def digest(self) -> Message:

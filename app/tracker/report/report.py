@@ -37,6 +37,7 @@ from app.tracker.state.snapshot import (
     ShowProgress,
     Snapshot,
 )
+from app.tracker.supervision.continuing import goes_on
 from app.tracker.supervision.home_shift import is_undone
 from app.tracker.supervision.sensors import sensors
 from app.tracker.supervision.weather_protection import protection_state
@@ -58,6 +59,7 @@ def snapshot(state: ControllerState, at: datetime, now: datetime, *, asked: bool
         activity=NAMES[type(state.activity)],
         activity_text=activity_text(state),
         approaching=is_approaching(state),
+        continues=goes_on(state),
         mode=state.memory.mode or default_mode(state.config.mount),
         orientation=state.memory.orientation,
         tracking_on=state.memory.tracking_on,

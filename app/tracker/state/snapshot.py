@@ -154,6 +154,7 @@ class Snapshot:
     should (priority 1), `local` that the switch at the cabinet is on local, `service` who serves the machine,
     `link` how the drive's replies come. `home` says who set the zero that is trusted, `home_lost` why and
     `home_lost_at` since when none is, `can_undo_home` that it was set and may be undone.
+    `continues` says that tracking goes on with nobody asked: now, after a stow, or by a recovery policy.
     `approaching` says of one that tracks that it has not reached the sun yet, or not again after a break.
     `warning` counts down to a motion that nobody at the machine asked for.
     `state` is the tracker's state in a word or two; `messages` are what to know about it, the most urgent
@@ -207,6 +208,7 @@ class Snapshot:
     can_undo_home: bool = False
     unreachable: Reason | None = None
     approaching: bool = False
+    continues: bool = False
     state: StateWord = StateWord.AT_STANDSTILL
     messages: tuple[OperatorMessage, ...] = ()
 

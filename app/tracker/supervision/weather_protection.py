@@ -8,9 +8,9 @@ from app.tracker.memory.observation import Observation
 from app.tracker.protections.guarding import HOLDS, OFF_GUARD, Guarding, latched, limits_of, step
 from app.tracker.protections.words import Protection, ProtectionState
 from app.tracker.settings.protections import Reaction, StowName
-from app.tracker.state.activity import Stowed, Stowing, Tracking
 from app.tracker.state.controller_state import ControllerState
 from app.tracker.state.snapshot import EventKind
+from app.tracker.supervision.continuing import goes_on
 from app.tracker.values.reason import Reason
 from app.tracker.weather.weather import NOTHING_SENSED, Quality, Quantity, Sensed
 
@@ -151,7 +151,7 @@ def _afterwards(state: ControllerState, continues: Message) -> Message:
         return say("The panel is not stowed. {hint}", hint=state.alarmed.hint)
     if state.memory.stow is not None:
         return _stays_stowed(state.memory.stow)
-    if _goes_on(state):
+    if goes_on(state):
         return continues
     return _NEEDS_OPERATOR if state.memory.tracking_on else _STAYS_OFF
 
@@ -167,15 +167,9 @@ def _after_dark(state: ControllerState) -> Message:
     """Return what this tracker will do once there is enough light."""
     if state.memory.stow is not None:
         return _stays_stowed(state.memory.stow)
-    if _goes_on(state):
+    if goes_on(state):
         return N_("Tracking continues automatically once the irradiance is sufficient.")
     return _NEEDS_OPERATOR if state.memory.tracking_on else N_("No action is needed while tracking is off.")
-
-
-def _goes_on(state: ControllerState) -> bool:
-    """Return whether tracking goes on by itself once the weather allows it."""
-    tracks = isinstance(state.activity, Tracking | Stowing | Stowed)
-    return tracks and state.memory.tracking_on and state.waiting.reason is None
 
 
 def doubt_reason(state: ControllerState, quantity: Quantity) -> Reason:

@@ -1,4 +1,6 @@
-"""Before limits or speeds are saved: what differs, where the axes stand, and what to be sure of."""
+"""Before limits, speeds, or what the panel aims by are saved: what differs, and what to be sure of."""
+
+from dataclasses import replace
 
 from starlette.requests import Request
 
@@ -6,29 +8,61 @@ from app.access.principal import ProofNeeded, Via
 from app.access.sessions import is_proven
 from app.base.message import N_
 from app.link.messages import TrackerDetail
+from app.tracker.access.location_change import against_other_settings, doing
+from app.tracker.commands.commands import CommandRejected
+from app.tracker.memory.memory import TrackerState
 from app.tracker.motion.limit_change import LimitReview, Standing, review
+from app.tracker.motion.target_change import target_review
 from app.tracker.settings.axes import Axis
 from app.tracker.settings.config import TrackerConfig
-from app.tracker.state.snapshot import SiteSnapshot
+from app.tracker.state.snapshot import SiteSnapshot, Snapshot
 from app.web.shell.deps import panel, principal
 
 CONFIRMED = "confirmed"
 """The field that holds the differences which somebody was sure of; others are asked for again."""
 
 
-def limit_review(site: SiteSnapshot | None, tracker: TrackerDetail, wanted: TrackerConfig) -> LimitReview:
-    """Return what saving would change of limits and speeds, judged against where the axes stand now."""
-    config = tracker.state.config
+def _refuse_before_asking(site: SiteSnapshot | None, tracker_id: str) -> None:
+    """Raise `CommandRejected` where the tracker takes no other settings now: to ask would be in vain."""
+    now = _now(site, tracker_id)
+    if now is None:
+        return
+    moves = any(axis is not None and axis.moving for axis in (now.azimuth, now.elevation))
+    (what,) = doing((now,)).values()
+    if reason := against_other_settings(tracker_id, what, is_moving=moves):
+        raise CommandRejected(reason)
+
+
+def _now(site: SiteSnapshot | None, tracker_id: str) -> Snapshot | None:
     trackers = () if site is None else site.trackers
-    now = next((one for one in trackers if one.tracker_id == config.tracker_id), None)
+    return next((one for one in trackers if one.tracker_id == tracker_id), None)
+
+
+def limit_review(site: SiteSnapshot | None, tracker: TrackerDetail, wanted: TrackerConfig) -> LimitReview:
+    """Return what saving would change of limits, speeds and aim, judged against where the axes stand now."""
+    config = tracker.state.config
+    now = _now(site, config.tracker_id)
     seen = {} if now is None else {Axis.AZIMUTH: now.azimuth, Axis.ELEVATION: now.elevation}
     stands: dict[Axis, Standing] = {axis: one for axis, one in seen.items() if one is not None}
-    return review(config, wanted, stands, trusted=tracker.state.memory.home is not None)
+    found = review(config, wanted, stands, trusted=tracker.state.memory.home is not None)
+    aimed = aim_review(site, tracker.state, replace(tracker.state, config=wanted))
+    return LimitReview(found.differences + aimed.differences, found.against, found.doubts + aimed.doubts)
 
 
-async def must_ask(request: Request, found: LimitReview) -> bool:
-    """Return whether somebody has to be sure of these differences before they are saved."""
-    return bool(found.doubts) and (await request.form()).get(CONFIRMED) != found.digest
+def aim_review(site: SiteSnapshot | None, old: TrackerState, new: TrackerState) -> LimitReview:
+    """Return what saving would change of the aim of a tracker that can track, and how far that moves it."""
+    return LimitReview() if site is None else target_review(old, new, site.location, site.at)
+
+
+async def must_ask(request: Request, tracker_id: str, found: LimitReview) -> bool:
+    """Return whether somebody has to be sure of these differences before they are saved.
+
+    Raises `CommandRejected` where that would be in vain: the tracker moves, or may do so by itself.
+    """
+    if not found.doubts or (await request.form()).get(CONFIRMED) == found.digest:
+        return False
+    _refuse_before_asking(panel(request).machine.latest(), tracker_id)
+    return True
 
 
 def require_proof(request: Request, config: TrackerConfig, wanted: TrackerConfig) -> None:

@@ -7,7 +7,7 @@ from app.alarms.urgency import IN_DANGER
 from app.base.message import Message
 from app.sun.algorithms import PUBLISHED
 from app.tracker.commands.control import ControlState
-from app.tracker.memory.memory import ClockSetting, Pointing, Sighting, StepName, TrackerMemory
+from app.tracker.memory.memory import Pointing, Sighting, StepName, TrackerMemory
 from app.tracker.memory.recording import RecordingInfo
 from app.tracker.motion.limit_change import LimitReview
 from app.tracker.settings.config import MountConfig, Orientation, TrackerConfig
@@ -227,33 +227,6 @@ class LocationPage:
 
 
 @dataclass(frozen=True, slots=True)
-class ClockPage:
-    """Step 2."""
-
-    template: ClassVar[str] = "clock.html"
-
-    frame: Frame
-    form: Form
-    zones: tuple[str, ...]
-    setting: ClockSetting
-    doubt: str = ""
-    moves: tuple[str, ...] = ()
-    asked_for: str = ""
-    asked_at: str = ""
-    is_saved: bool = False
-
-
-@dataclass(frozen=True, slots=True)
-class ClockQuestion:
-    """The question before a clock is trusted that differs from this device's, or that `moves` the site's."""
-
-    template: ClassVar[str] = "_clock_question.html"
-
-    doubt: str
-    moves: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True, slots=True)
 class HomingPage:
     """Step 3; `doubts` are the questions before a home position that is likely to be mistaken."""
 
@@ -382,6 +355,15 @@ class SettingsPage:
     tracking: tuple[SettingRow, ...]
     axes: dict[str, tuple[SettingRow, ...]]
     review: LimitReview | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class ReviewQuestion:
+    """What is asked below a button before it changes limits, speeds or aim."""
+
+    template: ClassVar[str] = "_review.html"
+
+    review: LimitReview
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,5 +1,6 @@
 """The sun check: what sightings of the sun tell about the zero, the mast and likely mistakes."""
 
+from dataclasses import replace
 from typing import Annotated
 
 from fastapi import Form
@@ -10,16 +11,17 @@ from app.base.angles import wrap180
 from app.base.message import N_
 from app.base.permission import Permission
 from app.link.messages import ApplySightings, SiteDetail, TakeSighting, TrackerDetail
-from app.tracker.commissioning.alignment import diagnose
+from app.tracker.commissioning.alignment import diagnose, pointing_of
 from app.tracker.memory.memory import Sighting
+from app.web.api.limit_review import aim_review, must_ask
 from app.web.http.errors import NotAcceptable
 from app.web.http.late_routes import page_router
 from app.web.http.needs import needs
 from app.web.http.whole_forms import MAY_BE_ABSENT
-from app.web.shell.contexts import SunCheckPage
+from app.web.shell.contexts import ReviewQuestion, SunCheckPage
 from app.web.shell.deps import MachineDep
 from app.web.shell.frame import tracker_frame
-from app.web.shell.orders import PressDep
+from app.web.shell.orders import Press, PressDep
 from app.web.shell.render import go, page
 from app.web.shell.wizard import tracker_of
 
@@ -57,19 +59,31 @@ async def apply(
     tracker_id: str, press: PressDep, machine: MachineDep, keep: Annotated[list[int], Form(), MAY_BE_ABSENT]
 ) -> Response:
     """Correct the pointing with the chosen sightings; the others are forgotten."""
-    stored = tracker_of(await machine.detail(), tracker_id).state.memory.sightings
+    tracker = tracker_of(await machine.detail(), tracker_id)
+    stored = tracker.state.memory.sightings
     if any(not 0 <= place < len(stored) for place in keep):
         raise NotAcceptable(N_("The list of sightings has changed; reload the page."))
     chosen = tuple(stored[place] for place in sorted(set(keep)))
-    await press.send(ApplySightings(tracker_id, chosen))
-    return go(press.request, f"/trackers/{tracker_id}/sun-check")
+    return await _corrected(press, machine, tracker, chosen)
 
 
 @router.post("/forget")
 @needs(Permission.CONFIGURE)
-async def forget(tracker_id: str, press: PressDep) -> Response:
+async def forget(tracker_id: str, press: PressDep, machine: MachineDep) -> Response:
     """Forget all sightings and the correction."""
-    await press.send(ApplySightings(tracker_id, ()))
+    return await _corrected(press, machine, tracker_of(await machine.detail(), tracker_id), ())
+
+
+async def _corrected(
+    press: Press, machine: MachineDep, tracker: TrackerDetail, keep: tuple[Sighting, ...]
+) -> Response:
+    """Correct the pointing with these sightings, or not at all; ask first where that moves the target."""
+    state, tracker_id = tracker.state, tracker.state.config.tracker_id
+    memory = replace(state.memory, pointing=pointing_of(keep))
+    asked = aim_review(machine.latest(), state, replace(state, memory=memory))
+    if await must_ask(press.request, tracker_id, asked):
+        return page(press.request, ReviewQuestion(asked))
+    await press.send(ApplySightings(tracker_id, keep))
     return go(press.request, f"/trackers/{tracker_id}/sun-check")
 
 

@@ -11,10 +11,12 @@ from app.base.message import N_, told_by
 from app.base.permission import Permission
 from app.base.zones import day_in
 from app.link.messages import ConfigureTracker, SiteDetail, TrackerDetail
+from app.tracker.motion.limit_change import LimitReview
 from app.tracker.mounts.capabilities import ABILITIES, abilities, axis_words
 from app.tracker.mounts.reach import Reach, reach
 from app.tracker.mounts.usual import mounted
 from app.tracker.settings.config import MountKind, TrackerConfig
+from app.web.api.limit_review import limit_review, must_ask
 from app.web.charts.drawings import YearDiagram
 from app.web.charts.mount_drawings import actuator_plot, rows_drawing, year_diagram
 from app.web.features.setup import mount_form
@@ -74,6 +76,9 @@ async def save(tracker_id: str, press: PressDep, machine: MachineDep) -> Respons
     wanted = mount_form.read(typed, tracker.state.config)
     if wanted is None:
         return await run_in_threadpool(_answer, press.request, tracker, typed, "", status=422)
+    asked = limit_review(machine.latest(), tracker, wanted)
+    if await must_ask(press.request, tracker_id, asked):
+        return await run_in_threadpool(_answer, press.request, tracker, typed, "", asked=asked)
     try:
         await press.send(ConfigureTracker(wanted))
     except NotAcceptable as refusal:
@@ -88,7 +93,13 @@ def _latitude_deg(detail: SiteDetail) -> float | None:
 
 
 def _answer(
-    request: Request, tracker: TrackerDetail, typed: Typed, done: str, *, status: int = 200
+    request: Request,
+    tracker: TrackerDetail,
+    typed: Typed,
+    done: str,
+    *,
+    asked: LimitReview | None = None,
+    status: int = 200,
 ) -> Response:
     config = tracker.state.config
     frame = tracker_frame(request, config.tracker_id, N_("Mount"))
@@ -105,8 +116,9 @@ def _answer(
         year=year,
         reach=found,
         done=done,
+        review=asked,
     )
-    return page(request, context, block="form", status=status)
+    return page(request, context, block="review" if asked else "form", status=status)
 
 
 def _year(frame: Frame, config: TrackerConfig) -> tuple[YearDiagram | None, Reach | None]:

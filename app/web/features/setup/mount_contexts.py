@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
+from app.tracker.motion.limit_change import LimitReview
 from app.tracker.mounts.capabilities import MountAbilities
 from app.tracker.mounts.reach import Reach
 from app.tracker.settings.config import MountConfig
@@ -48,3 +49,4 @@ class MountPage:
     year: YearDiagram | None
     reach: Reach | None
     done: str
+    review: LimitReview | None = None

@@ -22,7 +22,7 @@ from app.web.api.limit_review import limit_review, must_ask, require_proof
 from app.web.http.errors import NotAcceptable
 from app.web.http.late_routes import page_router
 from app.web.http.needs import needs
-from app.web.shell.contexts import ALGORITHMS, SettingRow, SettingsPage
+from app.web.shell.contexts import ALGORITHMS, ReviewQuestion, SettingRow, SettingsPage
 from app.web.shell.deps import MachineDep, panel
 from app.web.shell.forms import Typed, Unreadable, sent
 from app.web.shell.frame import tracker_frame
@@ -63,7 +63,7 @@ async def save(request: Request, tracker_id: str, press: PressDep, machine: Mach
         return _answer(press.request, tracker, found, status=422)
     require_proof(press.request, tracker.state.config, wanted)
     asked = limit_review(panel(press.request).machine.latest(), tracker, wanted)
-    if await must_ask(press.request, asked):
+    if await must_ask(press.request, tracker_id, asked):
         return _answer(press.request, tracker, found, block="review", asked=asked)
     await press.send(ConfigureTracker(wanted))
     return press.answer(N_("The settings are saved."))
@@ -71,8 +71,15 @@ async def save(request: Request, tracker_id: str, press: PressDep, machine: Mach
 
 @router.post("/undo")
 @needs(Permission.CONFIGURE, proven=True)
-async def undo(tracker_id: str, press: PressDep) -> Response:
-    """Set the tracker as it was before its settings were changed last."""
+async def undo(tracker_id: str, press: PressDep, machine: MachineDep) -> Response:
+    """Set the tracker as it was before its settings were changed last; ask first as `save` does."""
+    detail = await machine.detail()
+    tracker, former = tracker_of(detail, tracker_id), detail.site.former.get(tracker_id)
+    if former is not None:
+        wanted = replace(former, drive=tracker.state.config.drive)
+        asked = limit_review(machine.latest(), tracker, wanted)
+        if await must_ask(press.request, tracker_id, asked):
+            return page(press.request, ReviewQuestion(asked))
     await press.send(UndoSettings(tracker_id))
     root = f"/trackers/{tracker_id}/"
     return go(press.request, press.back if press.back.startswith(root) else f"{root}settings")

@@ -10,17 +10,18 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from app.base.instants import read_instant
-from app.base.message import N_, Message
+from app.base.message import N_, NOTHING, Message
 from app.base.permission import Permission
 from app.link.messages import SetClock, SiteDetail
+from app.tracker.access.location_change import MOST_APART
 from app.tracker.memory.memory import StepName
 from app.web.features.site.clock_doubt import clock_doubt, clock_moves, refuse_before_asking
 from app.web.features.site.location import zones
+from app.web.features.site.site_contexts import CONFIRMED, ClockPage, ClockQuestion
 from app.web.http.errors import NotAcceptable
 from app.web.http.late_routes import page_router
 from app.web.http.needs import needs
 from app.web.http.whole_forms import MAY_BE_ABSENT
-from app.web.shell.contexts import ClockPage, ClockQuestion
 from app.web.shell.deps import Panel, PanelDep
 from app.web.shell.formats import local
 from app.web.shell.forms import Typed, in_zone
@@ -30,7 +31,7 @@ from app.web.shell.wizard import tracker_of, wizard_frame
 
 router = page_router(prefix="/trackers/{tracker_id}/commissioning/clock")
 DeviceAt = Annotated[str, Form(max_length=40), MAY_BE_ABSENT]
-Confirmed = Annotated[str, Form(max_length=10), MAY_BE_ABSENT]
+Confirmed = Annotated[str, Form(max_length=40), MAY_BE_ABSENT]
 NAMES = ("date", "time", "time_zone")
 LONGEST_QUESTION = timedelta(minutes=10)
 """What was asked longer ago is asked again."""
@@ -70,9 +71,11 @@ async def keep_system(
     detail, seen, now = await built.machine.detail(), built.machine.latest(), built.site_now()
     new = now - timedelta(seconds=seen.clock.offset_s if seen else 0.0)
     moves = _moves(built, detail, new, detail.site.time_zone)
-    doubt = clock_doubt(built.clock.system_time(), _told(at))
-    if (doubt or moves) and confirmed != "yes":
-        return page(press.request, ClockQuestion(doubt, moves), status=422)
+    system, device = built.clock.system_time(), _told(at)
+    doubt = clock_doubt(system, device)
+    asked = (new - now, system - (device or system))
+    if (doubt or moves) and not _is_answer(confirmed, asked):
+        return page(press.request, ClockQuestion(_answer_to(asked), doubt, moves), status=422)
     await press.send(SetClock("system"))
     return go(press.request, _saved(tracker_id))
 
@@ -94,9 +97,10 @@ async def copy_device(
             N_("This device reported its time without a time zone; enter date and time manually.")
         )
     detail = await built.machine.detail()
+    asked = (instant - built.site_now(),)
     moves = _moves(built, detail, instant, detail.site.time_zone)
-    if moves and confirmed != "yes":
-        return page(press.request, ClockQuestion("", moves), status=422)
+    if moves and not _is_answer(confirmed, asked):
+        return page(press.request, ClockQuestion(_answer_to(asked), NOTHING, moves), status=422)
     await press.send(SetClock("manual", instant))
     return go(press.request, _saved(tracker_id))
 
@@ -125,13 +129,29 @@ async def set_by_hand(
     return go(press.request, _saved(tracker_id))
 
 
+def _answer_to(differences: tuple[timedelta, ...]) -> str:
+    """Return what stands for exactly these differences, in a question about them."""
+    return " ".join(f"{one.total_seconds():.0f}" for one in differences)
+
+
+def _is_answer(confirmed: str, differences: tuple[timedelta, ...]) -> bool:
+    """Return whether these differences were confirmed, none of them over a minute off what was asked."""
+    try:
+        named = [timedelta(seconds=int(one)) for one in confirmed.split()]
+    except (ValueError, OverflowError):
+        return False
+    if len(named) != len(differences):
+        return False
+    return all(abs(one - other) <= MOST_APART for one, other in zip(named, differences, strict=True))
+
+
 def _answered(typed: ClockForm, instant: datetime, now: datetime) -> datetime | None:
     """Return what the clock is to show now that the question was answered; None if it was another question.
 
     A typed time is that of the moment at which it was first sent: what the question took is added.
     """
     asked_for, asked_at = _told(typed.asked_for), _told(typed.asked_at)
-    if typed.confirmed != "yes" or asked_for != instant or asked_at is None:
+    if typed.confirmed != CONFIRMED or asked_for != instant or asked_at is None:
         return None
     took = now - asked_at
     return instant + took if timedelta(0) <= took <= LONGEST_QUESTION else None

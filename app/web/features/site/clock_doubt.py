@@ -6,7 +6,7 @@ from datetime import datetime, timedelta
 from app.base.instants import duration
 from app.base.message import NOTHING, Message, say, with_format
 from app.sun.position import Algorithm, InstantRefused, Location, SunPosition, sun_position
-from app.tracker.access.location_change import MOST_APART, against_another_clock
+from app.tracker.access.location_change import MOST_APART, against_another_clock, doing
 from app.tracker.commands.commands import CommandRejected
 from app.tracker.state.snapshot import SiteSnapshot
 from app.web.shell.formats import local
@@ -29,8 +29,7 @@ def clock_doubt(clock: datetime, device: datetime | None) -> Message:
 
 def refuse_before_asking(by: timedelta, now: SiteSnapshot | None) -> None:
     """Raise `CommandRejected` where the clock cannot be moved by so much: it is in vain to ask about it."""
-    doing = {one.tracker_id: (one.activity, one.tracking_on) for one in (now.trackers if now else ())}
-    if reasons := against_another_clock(by, doing):
+    if reasons := against_another_clock(by, doing(now.trackers if now else ())):
         raise CommandRejected(*reasons)
 
 

@@ -11,7 +11,7 @@ from app.base.startup import late
 from app.base.zones import zone_of
 from app.link.messages import SiteDetail
 from app.sun.position import Location
-from app.tracker.access.location_change import against_another_location
+from app.tracker.access.location_change import against_another_location, doing
 from app.tracker.commands.commands import CommandRejected
 from app.tracker.state.snapshot import SiteSnapshot
 
@@ -81,8 +81,7 @@ def refuse_before_asking(location: Location, detail: SiteDetail, now: SiteSnapsh
     if location == detail.site.location:
         return
     states = {tracker_id: tracker.state for tracker_id, tracker in detail.trackers.items()}
-    doing = {one.tracker_id: one.activity for one in (now.trackers if now else ())}
-    if reasons := against_another_location(states, doing):
+    if reasons := against_another_location(states, doing(now.trackers if now else ())):
         raise CommandRejected(*reasons)
 
 

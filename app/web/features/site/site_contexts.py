@@ -4,7 +4,11 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from app.link.metrics import GatewayMetrics
+from app.tracker.memory.memory import ClockSetting
 from app.web.shell.contexts import Form, Frame
+
+CONFIRMED = "yes"
+"""What a form holds whose question was answered."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,3 +32,35 @@ class SitePage:
     windows: Form
     window_hints: dict[str, str]
     held: dict[str, tuple[str, ...]]
+
+
+@dataclass(frozen=True, slots=True)
+class ClockPage:
+    """Step 2."""
+
+    template: ClassVar[str] = "clock.html"
+
+    frame: Frame
+    form: Form
+    zones: tuple[str, ...]
+    setting: ClockSetting
+    doubt: str = ""
+    moves: tuple[str, ...] = ()
+    asked_for: str = ""
+    asked_at: str = ""
+    is_saved: bool = False
+    answer: str = CONFIRMED
+
+
+@dataclass(frozen=True, slots=True)
+class ClockQuestion:
+    """The question before a clock is trusted that differs from this device's, or that `moves` the site's.
+
+    `answer` is what confirms exactly the differences that it names.
+    """
+
+    template: ClassVar[str] = "_clock_question.html"
+
+    answer: str
+    doubt: str
+    moves: tuple[str, ...] = ()
