@@ -34,6 +34,7 @@ from app.link.messages import (
     Order,
     RemoveTracker,
     RenameSite,
+    ReportDeviceClock,
     SavePlan,
     SaveRecording,
     SetClock,
@@ -142,6 +143,8 @@ class FakeMachine:
             "T2": FakeTracker(tracking, Pair(180.0, 60.0)),
         }
         self.orders: list[Order] = []
+        self.device_clocks: dict[str, float] = {}
+        """By how much each page says that this clock is ahead of its device's: a sign of life, no order."""
         self.rejects: dict[str, tuple[Reason, ...]] = {}
         self.refusal = ""
         self.reachable = True
@@ -160,6 +163,9 @@ class FakeMachine:
             raise MachineUnreachable("The controller service does not answer.")
         if self.refusal:
             raise ValueError(self.refusal)
+        if isinstance(order.command, ReportDeviceClock):
+            self.device_clocks[order.command.page] = order.command.ahead_s
+            return self.site
         self.orders.append(order)
         if reasons := self.rejects.get(order.command.kind):
             raise CommandRejected(*reasons)

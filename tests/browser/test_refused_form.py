@@ -7,7 +7,9 @@ from tests.browser.conftest import Opened, Plant
 
 T1 = "/trackers/T1"
 LOCATION = f"{T1}/commissioning/location"
-TRACKS = Reason("follows_the_sun", "T1 is tracking the sun for the present location.", "Stop T1 first.")
+TRACKS = Reason(
+    "follows_the_sun", "T1 is tracking the sun for the present location.", "End tracking of T1 first."
+)
 NOISE = ("Failed to load resource", "htmx:error")
 
 
@@ -30,7 +32,7 @@ def expect_refused(page: Page, what: str) -> None:
 
 def test_a_location_is_refused_while_tracking_before_it_is_asked_about(opened: Opened) -> None:
     page = typed(opened)
-    expect_refused(page, "Stop T2 first.")
+    expect_refused(page, "End tracking of T2 first.")
     expect(page.locator("[name=sun_there]")).to_have_count(0)
 
 
@@ -40,4 +42,4 @@ def test_a_location_that_is_refused_after_the_question_keeps_the_form(opened: Op
     page = typed(opened)
     page.locator("[name=sun_there]").check()
     page.locator("#forward .key").click()
-    expect_refused(page, "Stop T1 first.")
+    expect_refused(page, "End tracking of T1 first.")

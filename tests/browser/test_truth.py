@@ -1,5 +1,6 @@
 """The bar and the page follow a tracker through its states, and tell at once what is most urgent."""
 
+from datetime import UTC, datetime, timedelta
 from typing import Any
 
 import pytest
@@ -17,6 +18,8 @@ from tests.patience import until
 
 T1 = "/trackers/T1"
 JUST_CHANGED_MS = 700
+PING_MS = 1000
+MOST_APART_S = 60.0
 TOLD = """() => {
   const seen = (one) => one.checkVisibility() && one.getBoundingClientRect().top < innerHeight;
   const [says, card] = [document.getElementById("says"), document.getElementById("urgent")];
@@ -182,3 +185,16 @@ def test_no_alarm_is_acknowledged_that_came_under_a_finger_or_the_focus(plant: P
 
 def given(plant: Plant) -> list[str]:
     return [type(order.command).__name__ for order in plant.machine.orders]
+
+
+def test_a_page_tells_what_the_clock_of_its_device_shows(plant: Plant, opened: Opened) -> None:
+    page, by = opened(T1, still=True), timedelta(hours=1)
+    page.clock.set_system_time(datetime.now(UTC) + by)
+
+    def told() -> bool:
+        page.clock.run_for(PING_MS)
+        return any(
+            abs(one + by.total_seconds()) < MOST_APART_S for one in plant.machine.device_clocks.values()
+        )
+
+    until(told, "the page tells that its device's clock is an hour off")

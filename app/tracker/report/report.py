@@ -2,6 +2,7 @@
 
 from datetime import datetime
 from math import nan
+from typing import Any
 
 from app.base.angles import separation_deg, wrap360
 from app.tracker.access.authority import service_state
@@ -73,7 +74,6 @@ def snapshot(state: ControllerState, at: datetime, now: datetime, *, asked: bool
         following_error_deg=_following_error_deg(state),
         off_sun_deg=_off_sun_deg(state, fresh),
         in_position=_in_position(state, fresh),
-        homed=state.memory.home is not None,
         azimuth=_axis_state(state, fresh.azimuth) if fresh else None,
         elevation=_elevation_state(state, fresh),
         fault=state.activity.reason if isinstance(state.activity, Faulted) else None,
@@ -94,12 +94,21 @@ def snapshot(state: ControllerState, at: datetime, now: datetime, *, asked: bool
         local=fresh is not None and fresh.local,
         service=service_state(state),
         link=state.seen.link if state.seen else None,
-        home=state.memory.home,
-        home_lost=state.memory.home_lost,
-        home_lost_at=state.memory.home_lost_at,
-        can_undo_home=undoable(state) is None,
         rejected=state.memory.rejected,
+        **_home(state),
     )
+
+
+def _home(state: ControllerState) -> dict[str, Any]:
+    """Return what a snapshot tells of the home position."""
+    memory = state.memory
+    return {
+        "homed": memory.home is not None,
+        "home": memory.home,
+        "home_lost": memory.home_lost,
+        "home_lost_at": memory.home_lost_at,
+        "can_undo_home": undoable(state) is None,
+    }
 
 
 def standing(state: ControllerState) -> Standing:

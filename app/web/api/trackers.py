@@ -130,7 +130,7 @@ async def change_tracker(
 
 
 @router.post(
-    "/{tracker_id}/review", summary="What a change would do to limits and speeds", responses=NOT_FOUND
+    "/{tracker_id}/review", summary="What a change would do to limits, speeds, and aim", responses=NOT_FOUND
 )
 @needs(Permission.READ)
 async def review_change(
