@@ -6,6 +6,7 @@ from typing import NamedTuple, assert_never
 
 from app.base.message import N_
 from app.tracker.access.authority import watch_local, watch_service
+from app.tracker.access.continuing import goes_on
 from app.tracker.activities import (
     faulted,
     homing,
@@ -59,7 +60,6 @@ from app.tracker.state.setpoints import forget_correction, forget_setpoints, not
 from app.tracker.state.snapshot import ActivityName, Event, EventKind, Snapshot
 from app.tracker.state.transitions import begin, leave
 from app.tracker.state.waiting import wait_for
-from app.tracker.supervision.continuing import goes_on
 from app.tracker.supervision.home_shift import forget
 from app.tracker.supervision.machine_guard import is_silent, watch_machine
 from app.tracker.supervision.protect import (

@@ -3,6 +3,7 @@
 from datetime import datetime, timedelta
 
 from app.base.message import N_, say
+from app.tracker.access.continuing import fault_code, recovery_policy
 from app.tracker.activities import tracking
 from app.tracker.activities.faulted import reset_fault
 from app.tracker.settings.mechanics import Recovery as Recovers
@@ -12,7 +13,6 @@ from app.tracker.state.controller_state import ControllerState
 from app.tracker.state.parts import Recovery
 from app.tracker.state.positioning import at_rest
 from app.tracker.state.snapshot import EventKind
-from app.tracker.supervision.continuing import fault_code, recovery_policy
 from app.tracker.values.motion import Feedback
 
 HOUR = timedelta(hours=1)

@@ -4,7 +4,7 @@ from datetime import timedelta
 
 import pytest
 
-from app.link.messages import SetClock
+from app.link.messages import SetClock, SetLocation
 from app.tracker.access.location_change import (
     Doing,
     against_another_clock,
@@ -88,3 +88,20 @@ def test_who_takes_no_other_settings(activity: ActivityName) -> None:
         refused = against_other_settings("T1", now, is_moving=is_moving)
         assert refused is not None
         assert (refused.code, refused.hint) == ("tracker_busy", "Stop T1 first.")
+
+
+async def test_another_time_zone_moves_no_target(plant: Plant) -> None:
+    """It is a matter of how instants are written; a tracker that tracks takes it unasked."""
+    await tracks(plant)
+    before = plant.tracker().target
+    place = plant.site.model.state.location
+    assert place is not None
+    for order in (SetLocation(place, "America/Lima"), SetClock("system", None, "Asia/Tokyo")):
+        await plant.ask(order)
+        await plant.forward(seconds=0.2)
+        after = plant.tracker()
+        assert plant.site.model.state.time_zone == order.time_zone
+        assert after.activity is ActivityName.TRACKING
+        assert before is not None
+        assert after.target is not None
+        assert after.target.azimuth_deg == pytest.approx(before.azimuth_deg, abs=0.01)

@@ -461,9 +461,14 @@ def test_a_tracker_that_goes_on_by_itself_says_so(kind: Recovery) -> None:
     assert shown is not None
     assert ("Tracking continues automatically once" in shown.reason.hint) is recovers
     assert ("Tracking needs the operator" in shown.reason.hint) is not recovers
+    plant.cut = False
+    plant.forward(1.0)
+    for action in ("set_home", "home", "set_mode"):
+        assert ("tracking_continues" in plant.reasons(action)) is recovers, action
     plant.ask(Stop())
-    plant.forward(0.2)
+    plant.forward(2.0)
     assert not plant.snapshot.continues
+    assert "tracking_continues" not in plant.reasons("set_home") | plant.reasons("set_mode")
 
 
 def test_a_fault_that_needs_service_is_cleared_in_service_only() -> None:

@@ -4,6 +4,7 @@ from enum import StrEnum
 
 from app.base.message import N_, say, with_format, word
 from app.tracker.access.activity_interlocks import Condition, not_in_a_show, showing, while_
+from app.tracker.access.continuing import goes_on
 from app.tracker.access.local_locks import cleared, locked, remote, served, settings_open, unlocked, unserved
 from app.tracker.commands.commands import CommandRejected
 from app.tracker.memory.memory import StepName
@@ -12,7 +13,7 @@ from app.tracker.mounts.capabilities import zero_words
 from app.tracker.protections.fault_classes import CLASSES
 from app.tracker.settings.mechanics import Recovery
 from app.tracker.settings.protections import StowName
-from app.tracker.state.activity import Faulted
+from app.tracker.state.activity import Faulted, Holding
 from app.tracker.state.controller_state import ControllerState
 from app.tracker.state.positioning import at_rest
 from app.tracker.state.rejected import accepted
@@ -271,6 +272,15 @@ def on_time(state: ControllerState) -> Reason | None:
     )
 
 
+def settled(state: ControllerState) -> Reason | None:
+    """Return that a tracker at standstill may go on tracking with nobody asked, to where it is told here."""
+    if not (isinstance(state.activity, Holding) and goes_on(state)):
+        return None
+    name = state.config.name
+    text = say("{tracker_id} may continue tracking automatically.", tracker_id=name)
+    return Reason("tracking_continues", text, N_("Press Stop first."))
+
+
 def mode_selected(state: ControllerState) -> Reason | None:
     """Return that no mode has been selected."""
     if state.memory.mode is not None:
@@ -313,10 +323,21 @@ _CAN_PROVE = (accepted, reachable, sound, remote, cleared, while_(_HOLD), restin
 REQUIRED: dict[Action, tuple[Condition, ...]] = {
     Action.JOG: (accepted, reachable, sound, remote, cleared, prompt, while_(_HOLD, _JOG)),
     Action.STEP: (accepted, reachable, sound, remote, cleared, while_(_HOLD)),
-    Action.SET_HOME: (reachable, sound, remote, settings_open, while_(_HOLD), resting),
-    Action.UNDO_HOME: (reachable, sound, remote, settings_open, while_(_HOLD), resting, undoable),
-    Action.HOME: (accepted, reachable, sound, remote, cleared, unlocked, self_homing, while_(_HOLD), resting),
-    Action.SET_MODE: (while_(_HOLD, _JOG, _MOVE, _STOPPING),),
+    Action.SET_HOME: (reachable, sound, remote, settings_open, while_(_HOLD), settled, resting),
+    Action.UNDO_HOME: (reachable, sound, remote, settings_open, while_(_HOLD), settled, resting, undoable),
+    Action.HOME: (
+        accepted,
+        reachable,
+        sound,
+        remote,
+        cleared,
+        unlocked,
+        self_homing,
+        while_(_HOLD),
+        settled,
+        resting,
+    ),
+    Action.SET_MODE: (while_(_HOLD, _JOG, _MOVE, _STOPPING), settled),
     Action.MOVE: (*_CAN_MOVE, cleared, sheltered, while_(_HOLD, _MOVE, _TRACK, _STOW, _STOWED)),
     Action.PARK: (*_BY_ITSELF, sheltered, while_(_HOLD, _MOVE, _TRACK, _STOW, _STOWED)),
     Action.STOW: (*_BY_ITSELF, while_(_HOLD, _MOVE, _TRACK, _STOW, _STOWED)),

@@ -6,6 +6,7 @@ from typing import Any
 
 from app.base.angles import separation_deg, wrap360
 from app.tracker.access.authority import service_state
+from app.tracker.access.continuing import goes_on
 from app.tracker.access.interlocks import Action, reachable, undoable, unmet
 from app.tracker.activities.approach import is_approaching
 from app.tracker.activities.tracking import sun_height_deg
@@ -38,7 +39,6 @@ from app.tracker.state.snapshot import (
     ShowProgress,
     Snapshot,
 )
-from app.tracker.supervision.continuing import goes_on
 from app.tracker.supervision.home_shift import is_undone
 from app.tracker.supervision.sensors import sensors
 from app.tracker.supervision.weather_protection import protection_state

@@ -4,13 +4,13 @@ from dataclasses import replace
 from datetime import datetime
 
 from app.base.message import N_, Message, Word, say, with_format
+from app.tracker.access.continuing import goes_on
 from app.tracker.memory.observation import Observation
 from app.tracker.protections.guarding import HOLDS, OFF_GUARD, Guarding, latched, limits_of, step
 from app.tracker.protections.words import Protection, ProtectionState
 from app.tracker.settings.protections import Reaction, StowName
 from app.tracker.state.controller_state import ControllerState
 from app.tracker.state.snapshot import EventKind
-from app.tracker.supervision.continuing import goes_on
 from app.tracker.values.reason import Reason
 from app.tracker.weather.weather import NOTHING_SENSED, Quality, Quantity, Sensed
 
