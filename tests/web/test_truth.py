@@ -4,13 +4,14 @@ import re
 from dataclasses import replace
 from datetime import timedelta
 from html import unescape
-from itertools import product
+from itertools import cycle, islice, product
 
 import httpx
 import pytest
 
 from app.access.roles import Role
 from app.base.message import N_
+from app.tracker.commands.control import ControlRequest, ControlState
 from app.tracker.state.snapshot import ActivityName, Event, EventKind, Pair, Snapshot
 from app.web.languages.catalogue import catalogue_of
 from app.web.languages.known import in_words
@@ -165,18 +166,46 @@ async def test_the_answer_of_a_button_leaves_no_sentence_behind(
     assert len(machine.orders) == 1
 
 
-@pytest.mark.parametrize("role", [Role.VIEWER, Role.OPERATOR, Role.ENGINEER])
-async def test_every_button_that_is_off_says_why(role: Role, office: Office) -> None:
+def control(name: str, other: str) -> dict[str, ControlState]:
+    """Return every way in which somebody can stand to control, by its word."""
+    mine, of_another = ControlState(1, name, "session", 1), ControlState(1, other, "session", 1)
+
+    def wish(by: str, *, takes: bool = False, can_be_refused: bool = True) -> ControlRequest:
+        return ControlRequest(by, "session", takes, "Storm.", AT, can_be_refused=can_be_refused)
+
+    return {
+        "free": ControlState(0),
+        "mine": mine,
+        "wished": replace(mine, request=wish(other)),
+        "forced": replace(mine, request=wish(other, takes=True, can_be_refused=False)),
+        "held": replace(of_another, rank=0),
+        "above": replace(of_another, rank=3),
+        "asked": replace(of_another, request=wish(name)),
+        "waiting": replace(of_another, request=wish(name, takes=True)),
+    }
+
+
+@pytest.mark.parametrize("role", list(Role))
+async def test_every_page_tells_each_role_under_each_control_why_a_button_is_off(
+    role: Role, office: Office
+) -> None:
     tracker = StagedTracker(commissioned("T1", "North field", tracking=False), Pair(180.0, 45.0))
     office.machine.trackers["T1"] = tracker
     tracker.refused = (OPERATOR,)
     off = 0
+    others = cycle([*PAGES[1:], *(T1 + path for path in OTHER_PAGES)])
+    walk = product(control(f"{role}-1", "ada").items(), ("at standstill", "tracking", "not stowed"))
     async with office.browser(await office.session(role)) as browser:
-        for name in ("at standstill", "tracking", "not stowed"):
-            tracker.case = CASES[name]
+        for (standing, held), name in walk:
+            case = CASES[name]
+            tracker.case = replace(case, fields=case.fields | {"control": held})
             office.machine.emit()
-            for path in PAGES:
-                for form in FORM.findall((await browser.get(path)).text):
+            for path in (T1, *islice(others, 3)):
+                text = (await browser.get(path)).text
+                where = (standing, name, path)
+                check(text, case.word, seen(office.machine), live=path == T1)
+                assert f'data-state="{standing}"' in text, where
+                for form in FORM.findall(text):
                     off += bool(OFF.search(form))
-                    assert not OFF.search(form) or WHY.search(form), (name, path, form)
+                    assert not OFF.search(form) or WHY.search(form), (*where, form)
     assert off
