@@ -183,6 +183,8 @@ const reasonsFor = (element, action) => scopeOf(element)?.actions?.[action] ?? [
 // What is allowed is worked out for who looks: until it comes, the buttons of a tracker's page stay as they are.
 const unanswered = () => live.link === "live" && live.tracker !== null && Object.keys(live.tracker.actions).length === 0;
 
+const listed = (path, list) => (path.startsWith("site.") ? valueAt(live.site, path.slice(5)) : scopeOf(list)?.[path]);
+
 function paintActions() {
   for (const key of document.querySelectorAll("[data-action]")) {
     // A key that moves while it is held waits until the connection was measured.
@@ -191,7 +193,7 @@ function paintActions() {
     key.disabled = live.link !== "live" || unmeasured || reasonsFor(key, key.dataset.action).length > 0;
   }
   for (const list of unanswered() ? [] : document.querySelectorAll("[data-reasons]")) fillReasons(list, reasonsFor(list, list.dataset.reasons));
-  for (const list of document.querySelectorAll("[data-list]")) fillReasons(list, scopeOf(list)?.[list.dataset.list] ?? []);
+  for (const list of document.querySelectorAll("[data-list]")) fillReasons(list, listed(list.dataset.list, list) ?? []);
 }
 
 // Of a drive that does not answer, what it reported last.

@@ -8,7 +8,7 @@ from app.base.build import BUILT_AT
 from app.base.clock import Clock
 from app.base.instants import duration, is_of_these_times, of_these_times
 from app.base.message import N_, Word, say, with_format
-from app.site.clock.clock_offset import HINT, NOTHING, ClockOffset
+from app.site.clock.clock_offset import NOTHING, ClockOffset
 from app.site.clock.device_clocks import DeviceClocks
 from app.site.clock.ntp import KernelClock
 from app.tracker.access.location_change import MOST_APART
@@ -23,6 +23,7 @@ STABLE_AFTER = timedelta(seconds=60)
 UNSET = Reason("clock_unset", N_("The clock has not been set."), N_("Save the clock in step 2."))
 
 
+_COMPARE = N_("Compare both with a third clock, and set the one that is wrong: the controller's in step 2.")
 _KEPT = N_("NTP keeps the controller's clock correct: set the clock of that device.")
 
 
@@ -206,7 +207,7 @@ class Timekeeper:
                 who=who,
             )
         )
-        return (Reason("clock_differs", text, _KEPT if self.offset.is_kept else HINT),)
+        return (Reason("clock_differs", text, _KEPT if self.offset.is_kept else _COMPARE),)
 
     def _by_hand(self) -> timedelta:
         """Return by how much the clock was set ahead of a clock that NTP keeps."""
@@ -214,13 +215,10 @@ class Timekeeper:
         return timedelta(seconds=self._setting.offset_s) if is_known else NOTHING
 
     def _off_s(self) -> float | None:
-        """Return by how much the clock is known to be fast; a device counts where NTP keeps no clock."""
-        device = None if self.offset.is_kept else self.devices.furthest()
-        known = (
-            self.offset.seconds,
-            self._by_hand().total_seconds() or None,
-            None if device is None else device.ahead.total_seconds(),
-        )
+        """Return by how much the clock is known to be fast, None where a device differs and nobody knows."""
+        if self.devices.furthest() is not None and not (self.offset.is_kept or self.offset.by_sun):
+            return None
+        known = (self.offset.seconds, self._by_hand().total_seconds() or None)
         return max((one for one in known if one is not None), key=abs, default=None)
 
     def state(self) -> ClockState:

@@ -97,8 +97,8 @@ class Clock(Output):
     reasons: tuple[Reason, ...] = Field(description="Why it is not trusted.")
     warnings: tuple[Reason, ...] = Field(description="What is wrong with it while it is trusted still.")
     off_s: float | None = Field(
-        description="By how much it is known to be fast, seconds: by NTP, by views of the sun, by steps that "
-        "nobody answers for, or, without NTP, by a device that shows a page. Null where nothing tells."
+        description="By how much it is known to be fast, seconds: by NTP, by views of the sun, or by steps "
+        "that nobody answers for. Null where nothing tells, or only a device differs."
     )
 
 
