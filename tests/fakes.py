@@ -268,6 +268,7 @@ class FakeMachine:
         """Have every tracker hold, and tell every reader."""
         for tracker in self.trackers.values():
             tracker.activity = ActivityName.HOLDING
+            tracker.memory = replace(tracker.memory, tracking_on=False)
         self.emit()
 
     def cut(self) -> None:

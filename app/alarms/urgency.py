@@ -266,7 +266,7 @@ def concerns_all(alarm: Alarm) -> bool:
 
 
 def first_priority(tracker: Snapshot) -> int:
-    """Return the priority of the headline of a tracker, `INFORMATION` without any alarm."""
+    """Return the priority of the own headline of a tracker, `INFORMATION` without any alarm."""
     first = own_headline(tracker)
     return INFORMATION if first is None else first.priority
 

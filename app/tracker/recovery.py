@@ -3,7 +3,7 @@
 from datetime import datetime, timedelta
 
 from app.base.message import N_, say
-from app.tracker.access.continuing import fault_code, recovery_policy
+from app.tracker.access.continuing import HOUR, fault_code, recovery_policy
 from app.tracker.activities import tracking
 from app.tracker.activities.faulted import reset_fault
 from app.tracker.settings.mechanics import Recovery as Recovers
@@ -15,7 +15,6 @@ from app.tracker.state.positioning import at_rest
 from app.tracker.state.snapshot import EventKind
 from app.tracker.values.motion import Feedback
 
-HOUR = timedelta(hours=1)
 MOST_RESETS = 60
 
 

@@ -2,7 +2,7 @@
 
 import asyncio
 from contextlib import suppress
-from datetime import datetime, timedelta
+from datetime import UTC, datetime, timedelta
 from functools import partial
 from secrets import token_hex
 from typing import Annotated, Any, Literal, assert_never
@@ -20,6 +20,7 @@ from pydantic import (
 from starlette.websockets import WebSocket
 
 from app.access.principal import NotAllowed, Principal, ProofNeeded, SignInNeeded
+from app.base.instants import LAST_YEAR
 from app.base.logs import get_logger
 from app.base.message import N_, say, told_by
 from app.base.permission import Permission
@@ -46,6 +47,8 @@ router = APIRouter()
 
 MOST_IN_FLIGHT = 4
 STAY_EVERY = timedelta(seconds=3)
+LATEST_MS = datetime(LAST_YEAR + 1, 1, 1, tzinfo=UTC).timestamp() * 1000.0
+"""What no clock of these times shows is not told."""
 PROMPT = timedelta(seconds=5)
 """What a clock shows is not compared when it comes later than this."""
 DEAD_PRESS = Reason(
@@ -139,11 +142,21 @@ class DeviceReports:
         self._page = token_hex(8)
         self._told_at: datetime | None = None
 
+    async def leave(self, who: Principal) -> None:
+        """Tell that the page is gone, where the controller knows of its device's clock."""
+        if self._told_at is not None:
+            self._told_at = None
+            await self._tell(self._panel.keeper.current(who), 0.0)
+
+    async def _tell(self, who: Principal, ahead_s: float) -> None:
+        with suppress(CommandRejected, MachineUnreachable, ValueError, *FORBIDDEN):
+            await self._panel.machine.execute(order_of(who, ReportDeviceClock(self._page, ahead_s)))
+
     async def hear(self, shown_ms: float, who: Principal) -> None:
         """Tell what the device's clock shows where that has to be known, or is over."""
         site, now = self._panel.machine.latest(), self._panel.clock.now()
         who = self._panel.keeper.current(who)
-        if site is None or not who.may(Permission.READ):
+        if site is None or not who.may(Permission.READ) or shown_ms > LATEST_MS:
             return
         ahead_s = site.at.timestamp() - shown_ms / 1000.0
         if abs(ahead_s) <= MOST_APART.total_seconds():
@@ -152,8 +165,7 @@ class DeviceReports:
             due, told_at = self._told_at is None or now - self._told_at >= STAY_EVERY, now
         if due:
             self._told_at = told_at
-            with suppress(CommandRejected, MachineUnreachable, ValueError, *FORBIDDEN):
-                await self._panel.machine.execute(order_of(who, ReportDeviceClock(self._page, ahead_s)))
+            await self._tell(who, ahead_s)
 
 
 class Session:
@@ -211,7 +223,8 @@ class Session:
         self._tell("pong", tc=ping.tc)
 
     def close(self) -> None:
-        """The page is gone: end its presses at once."""
+        """The page is gone: end its presses at once, and forget its clock."""
+        self._hub.spawn(self._device.leave(self._who))
         for tracker_id, press_id in self._presses.end_all(self._clock.now()):
             self._hub.spawn(self._end(tracker_id, press_id))
 

@@ -1,11 +1,13 @@
 """How far another setting moves what a tracker aims at: asked from a degree on, where it can track."""
 
+import re
 from dataclasses import replace
-from datetime import UTC, datetime
+from datetime import UTC, datetime, timedelta
 
 import pytest
 
-from app.sun.position import Algorithm
+from app.base.angles import wrap180
+from app.sun.position import Algorithm, Location
 from app.tracker.memory.memory import Pointing, TrackerMemory, TrackerState
 from app.tracker.motion.limit_change import LimitReview
 from app.tracker.motion.target_change import target_review
@@ -144,3 +146,37 @@ def test_what_limits_cut_off_moves_the_target() -> None:
     low = replace(CONFIG, elevation=replace(CONFIG.elevation, maximum_deg=40.0))
     (doubt,) = asked(low, CONFIG).doubts
     assert "elevation axis" in doubt.message
+
+
+@pytest.mark.parametrize("half_range_deg", [200.0, 270.0])
+def test_of_equivalent_angles_the_nearest_counts(half_range_deg: float) -> None:
+    """The target of a turn and a half passes 180 degrees without a jump."""
+    azimuth = replace(CONFIG.azimuth, minimum_deg=-half_range_deg, maximum_deg=half_range_deg)
+    wide = replace(CONFIG, azimuth=azimuth)
+    off = replace(READY, pointing=Pointing(azimuth_offset_deg=1.5))
+    states = TrackerState(wide, READY), TrackerState(wide, off)
+    for minutes in range(0, 60, 5):
+        at = NOON + timedelta(minutes=minutes)
+        (doubt,) = target_review(*states, SAMSUN, at, 170.0).doubts
+        assert "by up to 1.5°" in doubt.message
+        now, new = (float(text) for text in re.findall(r"(-?[0-9.]+)°[;.]?", doubt.message)[-2:])
+        assert wrap180(new - now) == pytest.approx(1.5, abs=0.11)
+        assert now > 0.0 or half_range_deg < now + 360.0, "where it stands, not a turn away"
+
+
+def test_a_held_direction_is_faced_at_night_too() -> None:
+    memory = replace(READY, mode=Mode.FIXED)
+    off = replace(memory, pointing=Pointing(azimuth_offset_deg=30.0))
+    for place in (SAMSUN, Location(78.2, 15.6)):
+        for at in (NIGHT, datetime(2026, 12, 20, 12, tzinfo=UTC)):
+            states = TrackerState(CONFIG, memory), TrackerState(CONFIG, off)
+            (doubt,) = target_review(*states, place, at).doubts
+            assert "by up to 30.0° within the next 24 hours. At present" in doubt.message
+
+
+def test_in_polar_night_a_later_day_is_looked_at() -> None:
+    off = replace(READY, pointing=Pointing(azimuth_offset_deg=5.0))
+    at = datetime(2026, 12, 20, 12, tzinfo=UTC)
+    states = TrackerState(CONFIG, READY), TrackerState(CONFIG, off)
+    (doubt,) = target_review(*states, Location(78.2, 15.6), at).doubts
+    assert "moves by up to 5.0° once the sun is up again." in doubt.message

@@ -5,6 +5,7 @@ from html import unescape
 
 import pytest
 
+from app.tracker.state.snapshot import EventKind
 from tests.web.desk import Desk
 from tests.web.sockets import Socket, connected
 
@@ -65,12 +66,34 @@ async def test_no_clock_that_cannot_be_is_understood(desk: Desk, at: object) -> 
         assert (await page.next("problem"))["status"] == 422
 
 
-@pytest.mark.parametrize("at", [0, 1e14, None])
-async def test_the_ends_of_what_a_clock_can_show(desk: Desk, at: float | None) -> None:
+@pytest.mark.parametrize(
+    ("at", "is_told"), [(0, True), (4.1e12, True), (4.11e12, False), (1e14, False), (None, False)]
+)
+async def test_the_ends_of_what_a_clock_can_show(desk: Desk, at: float | None, *, is_told: bool) -> None:
     await desk.plant.commission()
     async with connected(desk.app, "tracker=T1") as page:
         for second in range(6):
             await page.send(type="ping", tc=second * 1000, at=at)
             await page.next("pong")
             await desk.forward(1)
-    assert ("clock_differs" in desk.plant.alarms()) is (at is not None)
+    assert ("clock_differs" in desk.plant.alarms()) is is_told
+
+
+async def test_a_page_that_is_gone_tells_nothing_any_more(desk: Desk) -> None:
+    await desk.plant.commission()
+    async with connected(desk.app, "tracker=T1") as page:
+        await look(desk, page, APART, seconds=6)
+    await desk.forward(31)
+    assert desk.plant.alarms() == {}
+
+
+async def test_a_hidden_page_that_tells_once_a_minute_raises_one_alarm(desk: Desk) -> None:
+    await desk.plant.commission()
+    async with connected(desk.app, "tracker=T1") as page:
+        await look(desk, page, APART, seconds=2)
+        for _ in range(5):
+            await desk.forward(59)
+            await look(desk, page, APART, seconds=1)
+        raised = [one.data["code"] for one in desk.plant.happened(EventKind.ALARM_RAISED)]
+    assert raised.count("clock_differs") == 1
+    assert not desk.plant.happened(EventKind.ALARM_RETURNED)

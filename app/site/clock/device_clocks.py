@@ -6,8 +6,8 @@ from typing import NamedTuple
 from app.base.clock import Clock
 from app.tracker.access.location_change import MOST_APART
 
-UNHEARD = timedelta(seconds=10)
-"""A device that was not heard of for so long looks at no page any more."""
+UNHEARD = timedelta(seconds=150)
+"""A page that was not heard of for so long is gone; one that is hidden tells once a minute."""
 MOST_DEVICES = 1000
 
 

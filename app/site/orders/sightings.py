@@ -6,7 +6,7 @@ from datetime import timedelta
 from app.base.message import N_, Word, say, with_format
 from app.link.messages import ApplySightings, TakeSighting
 from app.site.loop.loop import TrackerLoop
-from app.site.orders.tracker_setup import refuse_while_busy
+from app.site.orders.tracker_setup import refuse_another_aim
 from app.site.state.model import SiteModel
 from app.tracker.commands.commands import CommandRejected
 from app.tracker.commissioning.alignment import pointing_of
@@ -118,7 +118,7 @@ def _no_sightings(config: TrackerConfig) -> tuple[Reason, ...]:
 async def apply(model: SiteModel, given: ApplySightings, actor: str) -> tuple[Event, ...]:
     """Correct with what the kept sightings fit to; none: forget the correction."""
     loop = model.tracker(given.tracker_id)
-    refuse_while_busy(loop)
+    refuse_another_aim(loop)
     if given.keep and (reasons := _no_sightings(loop.config)):
         raise CommandRejected(*reasons)
     pointing = pointing_of(given.keep)

@@ -12,10 +12,11 @@ from app.site.orders.line_room import refuse_starved_drive
 from app.site.recording.auditing import as_action
 from app.site.state.model import SiteModel
 from app.site.state.validation import check_config, with_clean_names
-from app.tracker.access.location_change import against_other_settings
+from app.tracker.access.location_change import against_another_aim, against_other_settings
 from app.tracker.commands.commands import CommandRejected
 from app.tracker.memory.memory import Pointing, StepName, TrackerMemory, TrackerState
 from app.tracker.motion.limit_change import Standing, review
+from app.tracker.motion.target_change import aims_alike
 from app.tracker.settings.axes import Axis
 from app.tracker.settings.config import DriveKind, TrackerConfig
 from app.tracker.state.snapshot import Event, EventKind
@@ -75,7 +76,10 @@ async def configure(model: SiteModel, config: TrackerConfig, actor: str) -> tupl
     loop = model.tracker(config.tracker_id)
     config = with_clean_names(config)
     check_config(config)
-    refuse_while_busy(loop)
+    if aims_alike(loop.config, config):
+        refuse_while_busy(loop)
+    else:
+        refuse_another_aim(loop)
     _refuse_unsafe_limits(loop, config)
     _refuse_shared_drive(model, config)
     old = loop.config
@@ -218,8 +222,14 @@ def _refuse_unsafe_limits(loop: TrackerLoop, config: TrackerConfig) -> None:
 
 
 def refuse_while_busy(loop: TrackerLoop) -> None:
-    """Raise `CommandRejected` unless the tracker stands still and stays where it is."""
+    """Raise `CommandRejected` unless the tracker stands still and means to."""
     if reason := against_other_settings(loop.config.tracker_id, loop.doing, is_moving=loop.moving):
+        raise CommandRejected(reason)
+
+
+def refuse_another_aim(loop: TrackerLoop) -> None:
+    """Raise `CommandRejected` unless the tracker stands still and tracking is switched off."""
+    if reason := against_another_aim(loop.config.tracker_id, loop.doing, is_moving=loop.moving):
         raise CommandRejected(reason)
 
 

@@ -1,9 +1,13 @@
 """Whether tracking goes on by itself: now, after a stow, or by the recovery policy of what stopped it."""
 
+from datetime import timedelta
+
 from app.tracker.protections.fault_classes import CLASSES
 from app.tracker.settings.mechanics import Recovery, RecoveryPolicy
 from app.tracker.state.activity import Faulted, Holding, Stowed, Stowing, Tracking
 from app.tracker.state.controller_state import ControllerState
+
+HOUR = timedelta(hours=1)
 
 
 def goes_on(state: ControllerState) -> bool:
@@ -13,6 +17,14 @@ def goes_on(state: ControllerState) -> bool:
     if isinstance(state.activity, Tracking | Stowing | Stowed):
         return state.waiting.reason is None and state.memory.stow is None
     return state.recovery.goes_on or recovery_policy(state) is not None
+
+
+def goes_on_soon(state: ControllerState) -> bool:
+    """Return whether tracking goes on with nobody asked before the resets of an hour are used up."""
+    policy = recovery_policy(state)
+    recent = sum(state.now - at < HOUR for at in state.recovery.resets)
+    is_spent = policy is not None and policy.kind is Recovery.LIMITED and recent >= policy.times_per_hour
+    return goes_on(state) and (state.recovery.goes_on or not is_spent)
 
 
 def recovery_policy(state: ControllerState) -> RecoveryPolicy | None:

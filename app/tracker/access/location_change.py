@@ -1,7 +1,6 @@
 """What forbids another location, clock, or setting: a lock, or a tracker that moves or is led by it."""
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import replace
 from datetime import timedelta
 from enum import Enum, auto
 from typing import NamedTuple
@@ -40,6 +39,7 @@ class _Led(Enum):
     TRACKS = auto()
     SHOWS = auto()
     CONTINUES = auto()
+    IS_ON = auto()
 
 
 def against_another_location(
@@ -70,15 +70,24 @@ def against_another_clock(by: timedelta, now: Mapping[str, Doing]) -> tuple[Reas
 
 
 def against_other_settings(tracker_id: str, now: Doing, *, is_moving: bool) -> Reason | None:
-    """Return why a tracker, which does this now, takes no other settings: it moves or may do so."""
-    code, stop = "tracker_busy", say("Stop {tracker_id} first.", tracker_id=tracker_id)
+    """Return why a tracker, which does this now, takes no other settings: it moves or means to."""
+    stop = say("Stop {tracker_id} first.", tracker_id=tracker_id)
     if now.activity not in AT_REST:
-        return replace(busy(code, tracker_id, now.activity), hint=stop)
+        return Reason("tracker_busy", busy("tracker_busy", tracker_id, now.activity).message, stop)
     if is_moving:
-        return Reason(code, say("{name} is not at standstill.", name=tracker_id), stop)
-    if now.continues:
-        return Reason(code, _by_location(tracker_id, _Led.CONTINUES), stop)
+        return Reason("tracker_busy", say("{name} is not at standstill.", name=tracker_id), stop)
     return None
+
+
+def against_another_aim(tracker_id: str, now: Doing, *, is_moving: bool) -> Reason | None:
+    """Return why a tracker takes nothing that moves its target: it moves, or tracking may go on there."""
+    if reason := against_other_settings(tracker_id, now, is_moving=is_moving):
+        return reason
+    if not (now.tracking_on or now.continues):
+        return None
+    led = _Led.CONTINUES if now.continues else _Led.IS_ON
+    stop = say("Stop {tracker_id} first.", tracker_id=tracker_id)
+    return Reason("tracker_busy", _by_location(tracker_id, led), stop)
 
 
 def _led(now: Mapping[str, Doing]) -> Iterator[tuple[str, _Led, Message]]:
@@ -91,15 +100,15 @@ def _led(now: Mapping[str, Doing]) -> Iterator[tuple[str, _Led, Message]]:
                 yield tracker_id, _Led.TRACKS, end
             case ActivityName.SHOWING:
                 yield tracker_id, _Led.SHOWS, stop
-            case ActivityName.STOWING | ActivityName.STOWED if tracking_on:
+            case ActivityName.STOWING | ActivityName.STOWED if continues:
                 wait = say(
                     "Wait until {tracker_id} is tracking again, then end tracking.", tracker_id=tracker_id
                 )
                 yield tracker_id, _Led.CONTINUES, wait
-            case ActivityName.FAULTED if tracking_on:
-                yield tracker_id, _Led.CONTINUES, stop
             case _ if continues:
                 yield tracker_id, _Led.CONTINUES, stop
+            case _ if tracking_on:
+                yield tracker_id, _Led.IS_ON, stop
             case _:
                 pass
 
@@ -112,6 +121,8 @@ def _by_location(tracker_id: str, led: _Led) -> Message:
             return say("{tracker_id} is running a show.", tracker_id=tracker_id)
         case _Led.CONTINUES:
             return say("{tracker_id} may continue tracking automatically.", tracker_id=tracker_id)
+        case _Led.IS_ON:
+            return say("Tracking is still switched on for {tracker_id}.", tracker_id=tracker_id)
 
 
 def _by_clock(tracker_id: str, led: _Led) -> Message:
@@ -125,3 +136,5 @@ def _by_clock(tracker_id: str, led: _Led) -> Message:
                 "{tracker_id} may continue tracking automatically by the present clock.",
                 tracker_id=tracker_id,
             )
+        case _Led.IS_ON:
+            return say("Tracking is still switched on for {tracker_id}.", tracker_id=tracker_id)

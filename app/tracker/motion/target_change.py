@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from datetime import datetime, timedelta
 
+from app.base.angles import wrap180
 from app.base.message import N_, Message, join, say, with_format, word
 from app.sun.position import InstantRefused, Location, SunPosition, sun_position
 from app.tracker.memory.memory import Pointing, TrackerMemory, TrackerState
@@ -17,6 +18,8 @@ from app.tracker.values.reason import Reason
 
 LOOKED_AHEAD = timedelta(hours=24)
 EVERY = timedelta(minutes=30)
+WEEKS_LOOKED_AHEAD = 27
+"""No sun stays down for longer than half a year."""
 MOST_UNASKED_DEG = 1.0
 """So far a target may move unasked: as far as the sun does in four minutes."""
 AIMS = tuple(
@@ -35,17 +38,36 @@ CORRECTIONS = {
 Course = tuple[AxisTarget | None, ...]
 
 
+def aims_alike(old: TrackerConfig, new: TrackerConfig) -> bool:
+    """Return whether two configurations aim the panel alike: by the same settings, within the same limits."""
+    ranges = all(
+        (before.minimum_deg, before.maximum_deg) == (after.minimum_deg, after.maximum_deg)
+        for before, after in ((old.axis(axis), new.axis(axis)) for axis in Axis)
+    )
+    return ranges and all(one.of(old) == one.of(new) for one in AIMS)
+
+
 def target_review(
-    old: TrackerState, new: TrackerState, location: Location | None, at: datetime
+    old: TrackerState,
+    new: TrackerState,
+    location: Location | None,
+    at: datetime,
+    stands_deg: float | None = None,
 ) -> LimitReview:
     """Return what differs and how far the targets move within 24 hours, where anybody has to be sure of it.
 
-    A tracker that cannot track yet, for want of a home position, a mode or a location, is asked nothing, and
-    neither is one that loses its home position by the change.
+    `stands_deg` is where the first axis stands: of equivalent angles the nearest counts. Where the sun stays
+    down for 24 hours, a later day with sun is looked at, week by week. A tracker that cannot track yet,
+    for want of a home position, a mode or a location, is asked nothing, and neither is one that loses its
+    home position by the change.
     """
     if location is None or not (_can_track(old.memory) and _can_track(new.memory)) or _is_other(old, new):
         return LimitReview()
-    doubts = tuple(_doubts(new.config, _course(old, location, at), _course(new, location, at)))
+    before, after = _courses(old, new, location, at, stands_deg)
+    is_coming = any(before) or any(after)
+    if not is_coming:
+        before, after = _next_day(old, new, location, at)
+    doubts = tuple(_doubts(new.config, before, after, is_coming=is_coming))
     return LimitReview(tuple(_differences(old, new)), (), doubts) if doubts else LimitReview()
 
 
@@ -60,20 +82,37 @@ def _is_other(old: TrackerState, new: TrackerState) -> bool:
     return before.mount.kind is not after.mount.kind or before.drive != after.drive or actuators
 
 
-def _course(tracker: TrackerState, location: Location, at: datetime) -> Course:
-    """Return where the axes shall be each half hour from an instant on, None while the sun is down."""
-    found: list[AxisTarget | None] = []
-    near_deg = (tracker.config.azimuth.minimum_deg + tracker.config.azimuth.maximum_deg) / 2.0
+def _courses(
+    old: TrackerState, new: TrackerState, location: Location, at: datetime, stands_deg: float | None
+) -> tuple[Course, Course]:
+    """Return where the axes should be each half hour from an instant on, and would be; None with no sun."""
+    before: list[AxisTarget | None] = []
+    after: list[AxisTarget | None] = []
+    axis = old.config.azimuth
+    near_deg = (axis.minimum_deg + axis.maximum_deg) / 2.0 if stands_deg is None else stands_deg
     for number in range(LOOKED_AHEAD // EVERY + 1):
-        target = _target(tracker, location, at + number * EVERY, near_deg)
+        target = _target(old, location, at + number * EVERY, near_deg)
         near_deg = near_deg if target is None else target.azimuth_deg
-        found.append(target)
-    return tuple(found)
+        before.append(target)
+        after.append(_target(new, location, at + number * EVERY, near_deg))
+    return tuple(before), tuple(after)
+
+
+def _next_day(
+    old: TrackerState, new: TrackerState, location: Location, at: datetime
+) -> tuple[Course, Course]:
+    """Return the courses of the first day with sun, looked for week by week."""
+    found: tuple[Course, Course] = ((), ())
+    for week in range(1, WEEKS_LOOKED_AHEAD + 1):
+        found = _courses(old, new, location, at + timedelta(weeks=week), None)
+        if any(found[0]) or any(found[1]):
+            break
+    return found
 
 
 def _target(tracker: TrackerState, location: Location, at: datetime, near_deg: float) -> AxisTarget | None:
     config, memory = tracker.config, tracker.memory
-    sun = _sun(config, location, at)
+    sun = _sun(config, location, at, held=memory.mode is Mode.FIXED)
     if sun is None:
         return None
     wanted = mode_direction(
@@ -82,27 +121,34 @@ def _target(tracker: TrackerState, location: Location, at: datetime, near_deg: f
     return aim(config, memory.pointing, wanted, near_deg)
 
 
-def _sun(config: TrackerConfig, location: Location, at: datetime) -> SunPosition | None:
+def _sun(config: TrackerConfig, location: Location, at: datetime, *, held: bool) -> SunPosition | None:
+    """Return the sun that is up; one that is down, too, where a `held` direction is faced day and night."""
     try:
         sun = sun_position(config.algorithm, location, at)
     except InstantRefused:
         return None
-    return sun if sun.apparent_elevation_deg > 0.0 else None
+    return sun if held or sun.apparent_elevation_deg > 0.0 else None
 
 
-def _doubts(config: TrackerConfig, before: Course, after: Course) -> Iterator[Reason]:
+def _doubts(config: TrackerConfig, before: Course, after: Course, *, is_coming: bool) -> Iterator[Reason]:
     """Yield of each axis how far its target moves, if that is more than goes unasked."""
     for axis in config.mount.axes:
         old, new = _angles(axis, before), _angles(axis, after)
-        moved = [abs(b - a) for a, b in zip(old, new, strict=True) if a is not None and b is not None]
+        apart = wrap180 if axis is Axis.AZIMUTH else float  # both unwind, a moment apart
+        moved = [abs(apart(b - a)) for a, b in zip(old, new, strict=True) if a is not None and b is not None]
         if not moved or max(moved) <= MOST_UNASKED_DEG:
             continue
-        most = say(
-            "The target of the {axis} moves by up to {most_deg}° within the next 24 hours.",
-            axis=axis_of(config, axis),
-            most_deg=with_format(max(moved), ".1f"),
-        )
-        yield Reason(TARGET_MOVES, join(" ", (most, *_now(old[0], new[0]))), _HINT)
+        told = {"axis": axis_of(config, axis), "most_deg": with_format(max(moved), ".1f")}
+        if is_coming:
+            most = say(
+                "The target of the {axis} moves by up to {most_deg}° within the next 24 hours.", **told
+            )
+            yield Reason(TARGET_MOVES, join(" ", (most, *_now(old[0], new[0]))), _HINT)
+        else:
+            later = say(
+                "The target of the {axis} moves by up to {most_deg}° once the sun is up again.", **told
+            )
+            yield Reason(TARGET_MOVES, later, _HINT)
 
 
 def _angles(axis: Axis, course: Course) -> list[float | None]:
@@ -144,5 +190,5 @@ def _written(value: object, unit: str) -> str:
 
 
 _HINT = N_(
-    "Nothing moves now; the panel goes there when it tracks again. Check what is new against the tracker."
+    "Nothing moves now; the panel goes there when it tracks again. Check the new values at the tracker."
 )

@@ -4,7 +4,7 @@ from dataclasses import replace
 from datetime import datetime
 
 from app.base.message import N_, Message, Word, say, with_format
-from app.tracker.access.continuing import goes_on
+from app.tracker.access.continuing import goes_on_soon
 from app.tracker.memory.observation import Observation
 from app.tracker.protections.guarding import HOLDS, OFF_GUARD, Guarding, latched, limits_of, step
 from app.tracker.protections.words import Protection, ProtectionState
@@ -151,7 +151,7 @@ def _afterwards(state: ControllerState, continues: Message) -> Message:
         return say("The panel is not stowed. {hint}", hint=state.alarmed.hint)
     if state.memory.stow is not None:
         return _stays_stowed(state.memory.stow)
-    if goes_on(state):
+    if goes_on_soon(state):
         return continues
     return _NEEDS_OPERATOR if state.memory.tracking_on else _STAYS_OFF
 
@@ -167,7 +167,7 @@ def _after_dark(state: ControllerState) -> Message:
     """Return what this tracker will do once there is enough light."""
     if state.memory.stow is not None:
         return _stays_stowed(state.memory.stow)
-    if goes_on(state):
+    if goes_on_soon(state):
         return N_("Tracking continues automatically once the irradiance is sufficient.")
     return _NEEDS_OPERATOR if state.memory.tracking_on else N_("No action is needed while tracking is off.")
 

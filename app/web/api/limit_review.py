@@ -8,7 +8,7 @@ from app.access.principal import ProofNeeded, Via
 from app.access.sessions import is_proven
 from app.base.message import N_
 from app.link.messages import TrackerDetail
-from app.tracker.access.location_change import against_other_settings, doing
+from app.tracker.access.location_change import against_another_aim, against_other_settings, doing
 from app.tracker.commands.commands import CommandRejected
 from app.tracker.memory.memory import TrackerState
 from app.tracker.motion.limit_change import LimitReview, Standing, review
@@ -22,14 +22,15 @@ CONFIRMED = "confirmed"
 """The field that holds the differences which somebody was sure of; others are asked for again."""
 
 
-def _refuse_before_asking(site: SiteSnapshot | None, tracker_id: str) -> None:
-    """Raise `CommandRejected` where the tracker takes no other settings now: to ask would be in vain."""
+def _refuse_before_asking(site: SiteSnapshot | None, tracker_id: str, found: LimitReview) -> None:
+    """Raise `CommandRejected` where the tracker takes no such settings now: to ask would be in vain."""
     now = _now(site, tracker_id)
     if now is None:
         return
     moves = any(axis is not None and axis.moving for axis in (now.azimuth, now.elevation))
     (what,) = doing((now,)).values()
-    if reason := against_other_settings(tracker_id, what, is_moving=moves):
+    against = against_another_aim if found.moves_target else against_other_settings
+    if reason := against(tracker_id, what, is_moving=moves):
         raise CommandRejected(reason)
 
 
@@ -51,7 +52,11 @@ def limit_review(site: SiteSnapshot | None, tracker: TrackerDetail, wanted: Trac
 
 def aim_review(site: SiteSnapshot | None, old: TrackerState, new: TrackerState) -> LimitReview:
     """Return what saving would change of the aim of a tracker that can track, and how far that moves it."""
-    return LimitReview() if site is None else target_review(old, new, site.location, site.at)
+    now = _now(site, old.config.tracker_id)
+    if site is None or now is None:
+        return LimitReview()
+    stands_deg = None if now.azimuth is None else now.azimuth.position_deg
+    return target_review(old, new, site.location, site.at, stands_deg)
 
 
 async def must_ask(request: Request, tracker_id: str, found: LimitReview) -> bool:
@@ -61,7 +66,7 @@ async def must_ask(request: Request, tracker_id: str, found: LimitReview) -> boo
     """
     if not found.doubts or (await request.form()).get(CONFIRMED) == found.digest:
         return False
-    _refuse_before_asking(panel(request).machine.latest(), tracker_id)
+    _refuse_before_asking(panel(request).machine.latest(), tracker_id, found)
     return True
 
 

@@ -4,6 +4,7 @@ from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import Field, ValidationError
+from starlette.concurrency import run_in_threadpool
 from starlette.requests import Request
 
 from app.base.adapter import adapter
@@ -138,7 +139,8 @@ async def review_change(
 ) -> LimitReview:
     """Return what would differ, what forbids it where the axes stand, and what to be sure of."""
     tracker = await detail_of(machine, tracker_id)
-    return limit_review(site, tracker, _changed(tracker.state.config, change, await _latitude_deg(machine)))
+    wanted = _changed(tracker.state.config, change, await _latitude_deg(machine))
+    return await run_in_threadpool(limit_review, site, tracker, wanted)
 
 
 @router.delete(

@@ -1,9 +1,11 @@
 """The sun check: what sightings of the sun tell about the zero, the mast and likely mistakes."""
 
+from contextlib import suppress
 from dataclasses import replace
 from typing import Annotated
 
 from fastapi import Form
+from starlette.concurrency import run_in_threadpool
 from starlette.requests import Request
 from starlette.responses import Response
 
@@ -11,6 +13,7 @@ from app.base.angles import wrap180
 from app.base.message import N_
 from app.base.permission import Permission
 from app.link.messages import ApplySightings, SiteDetail, TakeSighting, TrackerDetail
+from app.tracker.commands.commands import CommandRejected
 from app.tracker.commissioning.alignment import diagnose, pointing_of
 from app.tracker.memory.memory import Sighting
 from app.web.api.limit_review import aim_review, must_ask
@@ -79,8 +82,9 @@ async def _corrected(
 ) -> Response:
     """Correct the pointing with these sightings, or not at all; ask first where that moves the target."""
     state, tracker_id = tracker.state, tracker.state.config.tracker_id
-    memory = replace(state.memory, pointing=pointing_of(keep))
-    asked = aim_review(machine.latest(), state, replace(state, memory=memory))
+    with suppress(CommandRejected):  # the controller says itself why these fit to nothing
+        state = replace(state, memory=replace(state.memory, pointing=pointing_of(keep)))
+    asked = await run_in_threadpool(aim_review, machine.latest(), tracker.state, state)
     if await must_ask(press.request, tracker_id, asked):
         return page(press.request, ReviewQuestion(asked))
     await press.send(ApplySightings(tracker_id, keep))

@@ -76,7 +76,7 @@ async def save(tracker_id: str, press: PressDep, machine: MachineDep) -> Respons
     wanted = mount_form.read(typed, tracker.state.config)
     if wanted is None:
         return await run_in_threadpool(_answer, press.request, tracker, typed, "", status=422)
-    asked = limit_review(machine.latest(), tracker, wanted)
+    asked = await run_in_threadpool(limit_review, machine.latest(), tracker, wanted)
     if await must_ask(press.request, tracker_id, asked):
         return await run_in_threadpool(_answer, press.request, tracker, typed, "", asked=asked)
     try:

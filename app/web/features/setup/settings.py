@@ -4,6 +4,7 @@ from dataclasses import replace
 from typing import Annotated, Any
 
 from fastapi import Form
+from starlette.concurrency import run_in_threadpool
 from starlette.requests import Request
 from starlette.responses import Response
 
@@ -62,7 +63,7 @@ async def save(request: Request, tracker_id: str, press: PressDep, machine: Mach
     if wanted is None:
         return _answer(press.request, tracker, found, status=422)
     require_proof(press.request, tracker.state.config, wanted)
-    asked = limit_review(panel(press.request).machine.latest(), tracker, wanted)
+    asked = await run_in_threadpool(limit_review, panel(press.request).machine.latest(), tracker, wanted)
     if await must_ask(press.request, tracker_id, asked):
         return _answer(press.request, tracker, found, block="review", asked=asked)
     await press.send(ConfigureTracker(wanted))
@@ -77,7 +78,7 @@ async def undo(tracker_id: str, press: PressDep, machine: MachineDep) -> Respons
     tracker, former = tracker_of(detail, tracker_id), detail.site.former.get(tracker_id)
     if former is not None:
         wanted = replace(former, drive=tracker.state.config.drive)
-        asked = limit_review(machine.latest(), tracker, wanted)
+        asked = await run_in_threadpool(limit_review, machine.latest(), tracker, wanted)
         if await must_ask(press.request, tracker_id, asked):
             return page(press.request, ReviewQuestion(asked))
     await press.send(UndoSettings(tracker_id))
