@@ -431,6 +431,10 @@ def test_a_fault_is_left_by_itself_as_often_as_its_policy_says() -> None:
         "twice an hour, then a person has to come"
     )
     assert plant.activity is ActivityName.FAULTED
+    plant.blow(irradiance_wm2=0.0).forward(5.0)
+    shown = plant.snapshot.protection
+    assert shown is not None
+    assert "Tracking needs the operator" in shown.reason.hint, "nothing is promised after the last reset"
     announced = plant.happened(EventKind.MOTION_ANNOUNCED)
     assert [event.message for event in announced if "fault" in event.message], "its motion is announced"
 
