@@ -48,7 +48,7 @@ async def test_what_is_not_over_a_minute_off_is_not_told_to_the_controller(desk:
     await desk.plant.commission()
     async with connected(desk.app, "tracker=T1") as page:
         await look(desk, page, timedelta(seconds=59), seconds=6)
-    assert desk.plant.site.model.timekeeper.devices.furthest() is None
+        assert desk.plant.site.model.timekeeper.devices.furthest() is None
 
 
 async def test_a_ping_that_was_held_up_tells_nothing_of_a_clock(desk: Desk) -> None:
@@ -56,7 +56,7 @@ async def test_a_ping_that_was_held_up_tells_nothing_of_a_clock(desk: Desk) -> N
     async with connected(desk.app, "tracker=T1") as page:
         await look(desk, page, timedelta(0), seconds=2)
         await look(desk, page, timedelta(0), seconds=4, late_s=90)
-    assert desk.plant.site.model.timekeeper.devices.furthest() is None
+        assert desk.plant.site.model.timekeeper.devices.furthest() is None
 
 
 @pytest.mark.parametrize("at", [-1, "now", 1e15, True, float("inf")])
