@@ -1,4 +1,4 @@
-// A question that an answer brings is read and answered where it stands: it is scrolled into view.
+// A question or a refusal that an answer brings is read where it stands: it is scrolled into view.
 
 const KEEP_PX = 12;
 const seen = new WeakSet();
@@ -15,8 +15,8 @@ function bring(question) {
 }
 
 function look() {
-  for (const question of document.querySelectorAll("[data-question]")) {
-    if (!seen.has(question)) bring(question);
+  for (const question of document.querySelectorAll("[data-question], form[method=post] .outcome > .outcome-refused")) {
+    if (!seen.has(question) && question.checkVisibility()) bring(question);
     seen.add(question);
   }
 }

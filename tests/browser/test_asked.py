@@ -51,6 +51,17 @@ def test_a_clock_11_hours_off_is_amber_and_asked_about(opened: Opened, plant: Pl
     assert asked(plant, SetClock) == 1
 
 
+def test_a_clock_that_cannot_be_copied_says_so_where_it_is_seen(opened: Opened) -> None:
+    page = opened(CLOCK, "tablet", allow=("409",))
+    page.set_viewport_size({"width": 1024, "height": 700})  # its button is in view, what stands below is not
+    page.evaluate(LATE)
+    expect(page.locator("#clock-apart[data-off]")).to_have_count(1)
+    page.locator('form[action$="/clock/device"] > button').click()
+    refused = page.locator(".outcome-refused")
+    expect(refused).to_contain_text("T2 is tracking the sun by the present clock.")
+    expect(refused).to_be_in_viewport(ratio=1)
+
+
 def test_a_longitude_on_the_wrong_side_is_asked_about(opened: Opened, plant: Plant) -> None:
     plant.machine.rest()
     page = opened(PLACE, "tablet", allow=("422",))
