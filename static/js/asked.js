@@ -21,7 +21,16 @@ function look() {
   }
 }
 
+// Who says no is done with the question; without this script the link loads the page again.
+function cancel(event) {
+  const key = event.target.closest?.("[data-cancel]");
+  if (!key) return;
+  event.preventDefault();
+  key.closest(".question").remove();
+}
+
 export function start() {
+  document.addEventListener("click", cancel);
   document.addEventListener("htmx:after:swap", look);
   look();
 }

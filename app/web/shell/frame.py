@@ -26,7 +26,7 @@ STEP_LABELS = {
     StepName.CLOCK: N_("Clock"),
     StepName.HOMING: N_("Homing"),
     StepName.MODE: N_("Mode"),
-    StepName.RUN: N_("Run"),
+    StepName.RUN: N_("Start"),
 }
 STATUS_TEXT = {
     StepStatus.DONE: Word("done"),
@@ -41,6 +41,9 @@ TRACKER_PAGES = (
     (N_("Settings"), "/settings", "sliders"),
     (N_("Sun path"), "/sun-path", ""),
     (N_("Sun check"), "/sun-check", ""),
+    (N_("Drive tests"), "/drive-tests", ""),
+    (N_("Protections"), "/protections", ""),
+    (N_("Service"), "/service", ""),
     (N_("Record"), "/record", ""),
 )
 """Pages of a tracker; those with a symbol stand in the rail, the others behind More."""

@@ -101,7 +101,7 @@ PAGES: tuple[tuple[str, Help], ...] = (
     (
         STEP + "run",
         Help(
-            N_("Run"),
+            N_("Start"),
             N_(
                 "All previous steps are checked again. Then start tracking, or show the tracking "
                 "movement of any day at higher speed."

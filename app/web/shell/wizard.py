@@ -57,14 +57,17 @@ def _back(tracker_id: str, step: StepName, here: str) -> Link:
     return Link(N_("Back"), f"{root}/commissioning/{ORDER[at - 1]}" if at else root)
 
 
-def onwards(tracker: TrackerDetail, step: StepName, here: str) -> Forward:
-    """Return the key forward: it saves a page that is a form; elsewhere it opens when the step is done."""
+def onwards(tracker: TrackerDetail, step: StepName, here: str) -> Forward | None:
+    """Return the key forward: it saves a page that is a form; elsewhere it opens when the step is done.
+
+    The last step has none: in the place of *Next* nothing stands that does something else.
+    """
     root = f"/trackers/{tracker.state.config.tracker_id}"
     found = step_of(tracker, step)
     if step is StepName.RUN:
-        return Forward(N_("Live"), root)
+        return None
     if here.endswith(PAGES_TO_SAVE):
-        return Forward(N_("Save, next"), form="step-form")
+        return Forward(N_("Save and next"), form="step-form")
     if found.status is StepStatus.DONE:
         return Forward(N_("Next"), f"{root}/commissioning/{ORDER[ORDER.index(step) + 1]}")
     return Forward(N_("Next"), reasons=found.reasons)

@@ -75,7 +75,7 @@ PARTS = (
     (N_("Clock"), "/commissioning/clock", N_("Step 2: date, time, NTP")),
     (N_("Homing"), "/commissioning/homing", N_("Step 3: jog, set home")),
     (N_("Mode"), "/commissioning/mode", N_("Step 4: fixed, azimuth, elevation, dual axis")),
-    (N_("Run"), "/commissioning/run", N_("Step 5: start tracking, show movement")),
+    (N_("Start"), "/commissioning/run", N_("Step 5: start tracking, show movement")),
 )
 
 
