@@ -21,12 +21,13 @@ function look() {
   }
 }
 
-// Who says no is done with the question; without this script the link loads the page again.
+// Who says no is done with the question; without this script the link loads the page again. A note is put aside.
 function cancel(event) {
-  const key = event.target.closest?.("[data-cancel]");
+  const key = event.target.closest?.("[data-cancel], [data-close]");
   if (!key) return;
   event.preventDefault();
-  key.closest(".question").remove();
+  key.closest(".question")?.remove();
+  key.closest(".note")?.setAttribute("data-closed", "");
 }
 
 export function start() {

@@ -28,14 +28,13 @@ function beat() {
   const message = { type: "jog", tracker_id: live.trackerId, press_id: press.id, axis: press.axis, direction: press.direction,
     speed: press.speed, sequence: press.sequence, tc: performance.now(), epoch: press.epoch };
   if (live.roundTripMs !== null) message.rtt_ms = live.roundTripMs;
-  press.beats += 1;
   // A heartbeat that cannot leave now is not sent at all: silence stops the axis, a backlog would move it late.
   if (live.send(message)) press.sequence += 1;
 }
 
 function begin(key, pointer) {
   if (press || key.disabled || live.link !== "live" || live.roundTripMs === null) return;
-  press = { id: randomId(), key, pointer, axis: key.dataset.jog, direction: Number(key.dataset.direction), speed: speed(), sequence: 0, beats: 0,
+  press = { id: randomId(), key, pointer, axis: key.dataset.jog, direction: Number(key.dataset.direction), speed: speed(), sequence: 0,
     epoch: live.tracker.control.epoch };
   press.box = key.getBoundingClientRect();
   keepStill(key);
@@ -48,8 +47,7 @@ function begin(key, pointer) {
 
 function end(why = "") {
   if (!press) return;
-  const { id, key, timer, pointer, beats, sequence } = press;
-  paintBeats(beats - sequence, beats);
+  const { id, key, timer, pointer } = press;
   press = null;
   endedAt = performance.now();
   clearInterval(timer);
@@ -117,11 +115,6 @@ function told({ kind, tracker_id: trackerId, message, data }) {
   said.textContent = message;
 }
 
-// How many of the last press's heartbeats could not leave in time.
-function paintBeats(lost, all) {
-  document.getElementById("lost-beats").textContent = all ? _(", {lost} of {all} heartbeats lost", { lost, all }) : "";
-}
-
 function paintLink() {
   if (live.link !== "live") return paintNoLink();
   const trip = live.roundTripMs;
@@ -129,7 +122,7 @@ function paintLink() {
   const level = trip === null ? 0 : LEVELS.findIndex((most) => trip <= most) + 1;
   document.getElementById("link-quality").dataset.level = level;
   document.getElementById("link-words-jog").textContent = LEVEL_WORDS[level];
-  document.getElementById("round-trip").textContent = trip === null ? "" : _("{time} ms round trip", { time: Math.max(1, Math.round(trip)) });
+  document.getElementById("round-trip").textContent = trip === null ? "" : _("{time} ms", { time: Math.max(1, Math.round(trip)) });
   document.getElementById("link-verdict").textContent = slow ? _("Connection too slow for hold-to-run: use incremental jog.") : "";
   return undefined;
 }
@@ -137,7 +130,15 @@ function paintLink() {
 function paintNoLink() {
   document.getElementById("link-quality").dataset.level = 0;
   document.getElementById("link-words-jog").textContent = _("no connection");
-  for (const id of ["round-trip", "lost-beats", "link-verdict"]) document.getElementById(id).textContent = "";
+  for (const id of ["round-trip", "link-verdict"]) document.getElementById(id).textContent = "";
+}
+
+// Which way the panel faces, seen from above; nothing is drawn of a drive that does not answer.
+function paintFacing({ tracker }) {
+  const facing = document.getElementById("jog-facing");
+  const { azimuth_deg: azimuth } = tracker?.measured ?? {};
+  facing?.setAttribute("visibility", azimuth === undefined ? "hidden" : "visible");
+  if (azimuth !== undefined) facing?.setAttribute("transform", `rotate(${azimuth.toFixed(1)})`);
 }
 
 // A button that the user's role may not press says which role it needs, and how to get it.
@@ -167,3 +168,4 @@ live.on("link", paintLink);
 live.on("stopped", () => end(_("Stopped.")));
 live.on("link", () => { if (live.link !== "live") end(_("The connection was lost.")); });
 live.on("state", () => { if (press?.key.disabled) end(); });
+live.on("state", paintFacing);

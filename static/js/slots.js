@@ -32,12 +32,12 @@ function actionsOf(slot) {
 
 // A press on a button that is off reaches its form.
 export function start() {
-  if (!document.querySelector(".slot, .jog-panel")) return;
+  if (!document.querySelector(".slot, .jog")) return;
   for (const slot of document.querySelectorAll(".slot:has(form.action + form.action)")) onlyAsRead(slot, () => actionsOf(slot));
   for (const kind of ["state", "link"]) live.on(kind, reach);
   addEventListener("focusin", ({ target }) => told(offAround(target, ".slot .action")));
   addEventListener("pointerdown", ({ target }) => {
-    told(offAround(target, ".slot .action, .jog-panel:has(> .reasons:not(:empty))"));
+    told(offAround(target, ".slot .action, .jog, .axis-steps"));
     if (target.closest?.(".outcome")) return;
     const form = target.closest?.(".slot .action");
     for (const outcome of document.querySelectorAll(".slot .outcome")) if (!form?.contains(outcome)) outcome.replaceChildren();

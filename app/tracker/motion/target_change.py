@@ -91,10 +91,10 @@ def _courses(
     axis = old.config.azimuth
     near_deg = (axis.minimum_deg + axis.maximum_deg) / 2.0 if stands_deg is None else stands_deg
     for number in range(LOOKED_AHEAD // EVERY + 1):
-        target = _target(old, location, at + number * EVERY, near_deg)
+        target = axis_target(old, location, at + number * EVERY, near_deg)
         near_deg = near_deg if target is None else target.azimuth_deg
         before.append(target)
-        after.append(_target(new, location, at + number * EVERY, near_deg))
+        after.append(axis_target(new, location, at + number * EVERY, near_deg))
     return tuple(before), tuple(after)
 
 
@@ -110,7 +110,13 @@ def _next_day(
     return found
 
 
-def _target(tracker: TrackerState, location: Location, at: datetime, near_deg: float) -> AxisTarget | None:
+def axis_target(
+    tracker: TrackerState, location: Location, at: datetime, near_deg: float
+) -> AxisTarget | None:
+    """Return where the axes of a tracker would be at an instant if it tracked, None with no sun to follow.
+
+    Of equivalent angles of the first axis, in degrees, the nearest to `near_deg` counts.
+    """
     config, memory = tracker.config, tracker.memory
     sun = _sun(config, location, at, held=memory.mode is Mode.FIXED)
     if sun is None:

@@ -10,6 +10,7 @@ from app.tracker.commands.control import ControlState
 from app.tracker.memory.memory import Pointing, Sighting, StepName, TrackerMemory
 from app.tracker.memory.recording import RecordingInfo
 from app.tracker.motion.limit_change import LimitReview
+from app.tracker.mounts.mount import AxisTarget
 from app.tracker.settings.config import MountConfig, Orientation, TrackerConfig
 from app.tracker.state.snapshot import SiteSnapshot, Snapshot
 from app.tracker.values.mode import Mode
@@ -250,13 +251,14 @@ class ModeChoice:
 
 @dataclass(frozen=True, slots=True)
 class ModePage:
-    """Step 4."""
+    """Step 4; `saved` is the mode that was saved, `chosen` what the form has."""
 
     template: ClassVar[str] = "mode.html"
 
     frame: Frame
     choices: tuple[ModeChoice, ...]
-    chosen: Mode | None
+    chosen: Mode
+    saved: Mode | None
     orientation: Orientation
 
 
@@ -276,11 +278,13 @@ class OrientationPage:
 
 @dataclass(frozen=True, slots=True)
 class RunPage:
-    """Step 5."""
+    """Step 5; `aim` is where the axes would go if tracking began now."""
 
     template: ClassVar[str] = "run.html"
 
     frame: Frame
+    config: TrackerConfig
+    aim: AxisTarget | None
     choice: ModeChoice | None
     scene: Scene
 

@@ -26,13 +26,8 @@ from app.web.shell.zero import zero_doubts
 
 pages = page_router(prefix="/trackers/{tracker_id}/commissioning/homing")
 router = page_router(prefix="/trackers/{tracker_id}")
-STEP_SIZES = ("0.1", "1", "5")
-MOVES = {
-    "azimuth-minus": (Axis.AZIMUTH, -1),
-    "azimuth-plus": (Axis.AZIMUTH, 1),
-    "elevation-minus": (Axis.ELEVATION, -1),
-    "elevation-plus": (Axis.ELEVATION, 1),
-}
+STEPS = {f"{axis} {by_deg:+g}": (axis, by_deg) for axis in Axis for by_deg in (-1.0, -0.1, 0.1, 1.0)}
+"""The increments of the page, by the values of their buttons."""
 
 
 @pages.get("")
@@ -87,16 +82,13 @@ async def home(tracker_id: str, press: PressDep) -> Response:
 @router.post("/step")
 @needs(Permission.OPERATE)
 async def step(
-    tracker_id: str, press: PressDep, move: Annotated[str, Form()] = "", size: Annotated[str, Form()] = ""
+    tracker_id: str, press: PressDep, wanted: Annotated[str, Form(alias="step")] = ""
 ) -> Response:
     """Move one axis by a small step."""
-    if move not in MOVES or size not in STEP_SIZES:
-        raise NotAcceptable(
-            N_("Choose an increment of 0.1, 1, or 5 degrees and press one of the four buttons.")
-        )
-    axis, direction = MOVES[move]
-    await press.send(Step(axis, direction * float(size)), tracker_id)
-    return press.answer(f"{axis.value.capitalize()} {'+' if direction > 0 else '−'}{size}°.")
+    if wanted not in STEPS:
+        raise NotAcceptable(N_("Choose an increment of 0.1 or 1 degree of one axis."))
+    await press.send(Step(*STEPS[wanted]), tracker_id)
+    return press.answer()
 
 
 @router.post("/end-jog")

@@ -67,13 +67,15 @@ class OrientationForm(BaseModel):
 @router.get("")
 @needs(Permission.READ)
 async def show(request: Request, tracker_id: str, machine: MachineDep) -> Response:
-    """Show the modes that the mount has."""
+    """Show the modes that the mount has; the first, with the highest yield, until one was chosen."""
     tracker = tracker_of(await machine.detail(), tracker_id)
     frame = wizard_frame(request, tracker, StepName.MODE)
     memory = tracker.state.memory
     listed = choices(tracker.state.config)
+    chosen = memory.mode or listed[0].mode
     return page(
-        request, ModePage(frame=frame, choices=listed, chosen=memory.mode, orientation=memory.orientation)
+        request,
+        ModePage(frame=frame, choices=listed, chosen=chosen, saved=memory.mode, orientation=memory.orientation),
     )
 
 
