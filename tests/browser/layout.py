@@ -45,11 +45,20 @@ ICONS = """most => [...document.querySelectorAll('svg[viewBox="0 0 24 24"][aria-
   return Math.max(width, height) > most;
 }).map((e) => `icon of ${e.getBoundingClientRect().width} px in ${e.parentElement.outerHTML.slice(0, 80)}`)"""
 LAYOUT = (LOOKS / "layout.js").read_text()
+STEPS = (LOOKS / "steps.js").read_text()
+MOST_WORDS = 60
+"""The most words in English on one of the five steps, in the content and the actions."""
 
 
 def faults(page: Page, **other: Any) -> list[str]:
     """Return what does not fit on a page, in words."""
     found: list[str] = page.evaluate(LAYOUT, LIMITS | other)
+    return found
+
+
+def step_faults(page: Page) -> list[str]:
+    """Return what does not fit on one of the five steps; nothing on another page, or with its help open."""
+    found: list[str] = page.evaluate(STEPS, MOST_WORDS)
     return found
 
 

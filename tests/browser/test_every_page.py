@@ -12,7 +12,7 @@ from playwright.sync_api import Browser
 
 from tests.browser.axe_rules import STRUCTURE, violations
 from tests.browser.every_page import PAGES, STATES
-from tests.browser.layout import displaced, faults, large_icons
+from tests.browser.layout import displaced, faults, large_icons, step_faults
 from tests.browser.panels import Panels
 
 OPENED_STATES = (
@@ -35,5 +35,5 @@ def panels(browser: Browser) -> Iterator[Panels]:
 @pytest.mark.parametrize("name", [*PAGES, *OPENED_STATES])
 def test_a_page_is_whole(name: str, panels: Panels) -> None:
     with panels.shown((PAGES | STATES)[name]) as page:
-        assert faults(page) + displaced(page) + large_icons(page) == []
+        assert faults(page) + displaced(page) + large_icons(page) + step_faults(page) == []
         assert violations(page, STRUCTURE) == []

@@ -7,7 +7,7 @@ from playwright.sync_api import Page
 
 from tests.browser.axe_rules import looked_at
 from tests.browser.conftest import SIZES
-from tests.browser.layout import LOOKS, SCREEN_SIZES, displaced, faults, unfold
+from tests.browser.layout import LOOKS, SCREEN_SIZES, displaced, faults, step_faults, unfold
 from tests.browser.letters import foreign
 from tests.browser.panels import resize
 from tests.browser.reading import tree_faults
@@ -33,6 +33,15 @@ def misfits(page: Page) -> list[str]:
     return _at(page, *SCREEN_SIZES) + with_all_open(page, "phone", "tablet")
 
 
+def fits(page: Page) -> list[str]:
+    """Return what does not fit on one of the five steps, on a phone and on a tablet."""
+    found = []
+    for size in ("phone", "tablet"):
+        resize(page, *SIZES[size])
+        found += [f"{size}: {one}" for one in step_faults(page)]
+    return found
+
+
 def with_all_open(page: Page, *sizes: str) -> list[str]:
     """Return what does not fit on a page with everything open, and letters that are not ours."""
     unfold(page)
@@ -43,7 +52,7 @@ def _at(page: Page, *sizes: str) -> list[str]:
     found = []
     for size in sizes:
         resize(page, *SCREEN_SIZES[size])
-        found += [f"{size}: {one}" for one in faults(page) + displaced(page)]
+        found += [f"{size}: {one}" for one in faults(page) + displaced(page) + step_faults(page)]
     return found
 
 

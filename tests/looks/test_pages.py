@@ -12,7 +12,7 @@ from tests.browser.panels import Panels
 from tests.looks.conftest import DUE
 from tests.looks.figures import PICTURES, faults_of_figures
 from tests.looks.fonts import NAMES, PICTURED, said, unlike, unlike_in_motion
-from tests.looks.judged import silent, unfit, unusable, weight, with_all_open
+from tests.looks.judged import fits, silent, unfit, unusable, weight, with_all_open
 from tests.looks.stamp import LETTERS, put
 
 # pvlib 0.16 asks pandas 3.1 for a name that pandas will drop.
@@ -70,7 +70,7 @@ def spoken(name: str, code: str, panels: Panels) -> list[str]:
     """Return what does not fit in another language."""
     with panels.shown(EVERY_PAGE[name], code) as page:
         tag = page.evaluate("document.documentElement.lang")
-        return with_all_open(page, "phone", "desk") + (
+        return fits(page) + with_all_open(page, "phone", "desk") + (
             [] if tag == LANGUAGES[code].tag else [f"the language is {tag}"]
         )
 

@@ -5,7 +5,7 @@ from playwright.sync_api import Browser, Page
 
 from tests.browser.axe_rules import EVERY_RULE, STRUCTURE, violations
 from tests.browser.every_page import EVERY_PAGE
-from tests.browser.layout import faults
+from tests.browser.layout import faults, step_faults
 from tests.browser.letters import undrawn
 from tests.browser.panels import Panels
 from tests.browser.reading import tree_faults
@@ -28,6 +28,9 @@ overflow:hidden;white-space:nowrap">Referenzpunkt setzen</a><p style="width:500p
 <p style="position:absolute;left:4px;top:504px;margin:0">Second words</p>
 <svg viewBox="0 0 100 40" style="position:absolute;top:600px;left:0;width:100px;height:40px">
 <text x="60" y="20">cut off here</text></svg>"""
+A_STEP = """<style>body { margin: 0; height: 2100px } button { position: absolute; top: 2036px; height: 64px }
+footer { position: fixed; bottom: 0; height: 80px; }</style><nav id="steps"></nav><main class="content">
+<button>Last</button>%s</main><footer class="footer">Foot</footer>""" % ("word " * 60)
 ON_A_PAGE = """() => {
   const wrong = '<input id="unnamed"><p class="faint">too faint</p><h6>deep</h6>'
     + '<div id="touched"></div><button id="hidden-focus" class="key">no edge</button>';
@@ -108,3 +111,15 @@ def test_fonts_of_the_computer_would_be_seen(browser: Browser, many: Browser) ->
         for paragraph in range(2):
             words = [one.locator("p").nth(paragraph).screenshot() for one in (bare, full)]
             assert words[0] != words[1]
+
+
+def test_a_step_that_scrolls_or_says_much_is_found(browser: Browser) -> None:
+    page = browser.new_page(viewport={"width": 1024, "height": 768})
+    page.set_content(f'<html lang="en">{A_STEP}')
+    scrolls, many = step_faults(page)
+    page.set_viewport_size({"width": 390, "height": 844})
+    below, _ = step_faults(page)
+    page.close()
+    assert scrolls == "the step scrolls by 1332 px"
+    assert many.startswith("61 words: word")
+    assert below == "below the fold by 1336 px: Last"

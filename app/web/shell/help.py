@@ -112,7 +112,7 @@ PAGES: tuple[tuple[str, Help], ...] = (
                 N_("At night, the tracker holds until sunrise; this is not a fault."),
                 N_("STOP ends the motion immediately. STOP is not an emergency stop."),
             ),
-            "5-run",
+            "5-start",
         ),
     ),
     (

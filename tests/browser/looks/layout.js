@@ -32,7 +32,9 @@
   const down = (a, b) => Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top);
   // What stays in sight lies over the page when it is scrolled; what is opened over it lies over the rest.
   const layer = (e) => {
-    const over = e.closest(".pop[open] > :not(summary), .messages:has(> [open]), .rail:popover-open, .stop-answer, .prove-here");
+    const laid = e.closest(".question, .note, .jog-now, .outcome-refused, .outcome-ok");
+    const lies = laid && /fixed|absolute/.test(getComputedStyle(laid).position) ? laid : null;
+    const over = lies ?? e.closest(".pop[open] > :not(summary), .messages:has(> [open]), :popover-open, dialog[open], .stop-answer, .prove-here");
     if (over) return `opened ${[...document.querySelectorAll("*")].indexOf(over)}`;
     return e.closest(".header, .rail, .footer") && scrollY > 0 ? "frame" : e.closest(".footer") && innerWidth < 900 ? "below" : "page";
   };

@@ -1,0 +1,27 @@
+// What does not fit on one of the five steps as it is met: a tablet that scrolls, a button that a phone does not show, many words.
+(most) => {
+  if (!document.getElementById("steps") || document.querySelector(".help[open], :popover-open")) return [];
+  const found = [];
+  const shown = (e) => e.checkVisibility({ visibilityProperty: true }) && !e.closest(".visually-hidden");
+  if (innerWidth >= 900) {
+    const beyond = document.documentElement.scrollHeight - innerHeight;
+    if (beyond > 0) found.push(`the step scrolls by ${beyond} px`);
+  } else {
+    const row = [...document.querySelectorAll(".slots .key, .footer")].filter(shown).map((e) => e.getBoundingClientRect().top);
+    const end = Math.min(...row);
+    const keys = [...document.querySelectorAll(".content :is(a.key, button, .key-choice, .input)")].filter(shown);
+    for (const key of keys) {
+      const { bottom } = key.getBoundingClientRect();
+      if (bottom > end + 0.5) found.push(`below the fold by ${(bottom - end).toFixed(0)} px: ${(key.textContent || key.name).trim()}`);
+    }
+  }
+  const words = [];
+  const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+  for (let node = walker.nextNode(); node; node = walker.nextNode()) {
+    const e = node.parentElement;
+    if (!e.closest(".content, .slots, #steps > .question") || e.closest("script, style, option, svg, template") || !shown(e)) continue;
+    if (getComputedStyle(e).clipPath !== "inset(50%)") words.push(...(node.data.match(/[\p{L}\p{N}]*\p{L}[\p{L}\p{N}]+/gu) ?? []));
+  }
+  if (document.documentElement.lang.startsWith("en") && words.length > most) found.push(`${words.length} words: ${words.join(" ")}`);
+  return found;
+}
