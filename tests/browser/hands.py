@@ -74,7 +74,7 @@ class Finger(Mouse):
         assert box is not None
         assert size is not None
         away = size["height"] / 2 - box["y"] - box["height"] / 2
-        if abs(away) > size["height"] / 4:
+        if abs(away) > size["height"] / 4 and not key.evaluate("one => one.closest('.footer') !== null"):
             swipe = {"x": MARGIN_PX, "y": size["height"] / 2, "yDistance": away, "speed": 4000}
             session.send(
                 "Input.synthesizeScrollGesture",

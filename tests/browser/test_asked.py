@@ -80,7 +80,7 @@ def test_a_longitude_on_the_wrong_side_is_asked_about(opened: Opened, plant: Pla
 def test_the_key_of_the_question_of_the_home_position_is_not_covered(stage: Stage) -> None:
     page = stage.open(HOMING, "phone", language="de", allow=("422", "409"))
     Mouse(page, stage.advance).hold(page.locator('[data-action="set_home"][data-after-jog]'), CONFIRM_MS)
-    sure = page.locator('.ask-zero [name="confirmed"]')
+    sure = page.locator('#zero-outcome [name="confirmed"]')
     sure.wait_for()
     stage.advance(BEAT_MS)
     assert sure.evaluate(COVERED) == []

@@ -8,7 +8,7 @@ from playwright.sync_api import Browser, Page
 
 from app.simulation.faults import Fault, FaultKind
 from app.tracker.state.snapshot import ActivityName
-from tests.browser.hands import Mouse
+from tests.browser.hands import Mouse, middle
 from tests.browser.page_clock import BEAT_MS
 from tests.browser.site_stage import SiteStage, staged_site
 from tests.browser.test_set_home import COARSE_MS, COUNTS_MS, SET, UNDO
@@ -55,14 +55,16 @@ def test_after_an_undo_and_a_search_only_what_is_so_is_said(site: SiteStage) -> 
     page.locator(UNDO).click()
     site.until(page.locator('.message[data-code="home_position_undone"]').count)
     site.beat_ms = BEAT_MS
+    assert "key-primary" not in str(page.locator(SET).get_attribute("class"))
     Mouse(page, site.advance).hold(page.locator(KEY), AWAY_MS)
+    assert "key-primary" in str(page.locator(SET).get_attribute("class")), "it was moved by hand"
     site.until(lambda: site.tracker.activity is ActivityName.HOLDING)
     site.beat_ms = COARSE_MS
     site.until(lambda: happened.count() == 0)
     search(site, page)
     codes = happened.evaluate_all("all => all.map((one) => one.dataset.code)")
     assert codes == ["homing_ended"], "the last thing that happened, and nothing before it"
-    assert page.locator(".homing .outcome-ok").count() == 0
+    assert page.locator("#home-place .outcome-ok").count() == 0
 
 
 def test_service_says_that_the_search_runs_and_then_that_it_was_not_finished(site: SiteStage) -> None:
@@ -78,19 +80,20 @@ def test_service_says_that_the_search_runs_and_then_that_it_was_not_finished(sit
 
 def test_of_a_silent_drive_is_said_that_it_does_not_answer_and_since_when(site: SiteStage) -> None:
     page = site.open(HOMING, "tablet")
-    pill = page.locator(".jog-state .chip:visible")
-    site.until(lambda: pill.inner_text() == "Not homed")
+    site.until(lambda: word(page) == "Not homed")
     site.do(lambda: site.served.drives["T1"].inject(Fault(FaultKind.SILENCE)))
     site.until(lambda: site.tracker.unreachable is not None)
     page.locator("#stop-key").click()
     site.advance(77_000)
     assert site.tracker.activity is ActivityName.STOPPING
-    assert pill.inner_text() == word(page) == "No connection"
+    assert word(page) == "No connection"
     first = page.locator(".says-first").inner_text()
     assert re.fullmatch(r"Drive does not answer · since \d\d:\d\d:\d\d", first)
     assert page.locator(".says-text").text_content() == "No connection to the drive"
+    page.mouse.click(*middle(page.locator(KEY)))
     said = page.locator("main").inner_text()
     assert "The drive of Tracker 1 does not answer." in said
+    assert "Last reading" in said
     assert "standstill" not in said
     site.do(site.served.drives["T1"].end_injected_faults)
-    site.until(lambda: pill.inner_text() == "Not homed")
+    site.until(lambda: word(page) == "Not homed")

@@ -32,7 +32,7 @@ def longest(text: str) -> str:
 
 WATCH = """(key) => {
   const [button, content] = [document.querySelector(key), document.getElementById("content")];
-  const above = () => button.closest(".columns").getBoundingClientRect().top + scrollY
+  const above = () => button.closest(".columns, .homing").getBoundingClientRect().top + scrollY
     - parseFloat(getComputedStyle(content).marginTop);
   window.seen = { tops: [], above: [above()] };
   const look = () => {
@@ -44,7 +44,7 @@ WATCH = """(key) => {
   button.addEventListener("pointerdown", () => requestAnimationFrame(look), { once: true });
 }"""
 ADD_NOTICE = """document.getElementById("steps").insertAdjacentHTML(
-  "beforeend", '<div class="step-open" id="step-reasons"><p>A doubt that the movement settles.</p></div>')"""
+  "beforeend", '<div class="question" id="step-reasons"><p>A doubt that the movement settles.</p></div>')"""
 """The steps are asked for again as soon as the axis moves, and this is not among what comes."""
 
 
@@ -98,12 +98,11 @@ def test_reasons_that_come_above_the_keys_do_not_move_them(site: SiteStage) -> N
 
 
 SEEN_AT_ONCE = {
-    NOTICE: 1,
     "[data-jog]": 4,
     ".speed .key": 2,
     '[data-action="set_home"]': 1,
     '[data-action="home"]': 1,
-    ".jog-state": 1,
+    ".jog-says": 1,
     "#link-quality": 1,
 }
 BELOW = """([names, end]) => {

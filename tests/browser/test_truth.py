@@ -123,13 +123,13 @@ def test_on_a_phone_keys_to_hold_that_are_off_say_why_in_sight(plant: Plant, ope
     tracker = stage(plant)
     tracker.refused = (FAULT,)
     page = opened(f"{T1}/commissioning/homing", "phone")
-    key, why = page.locator('[data-jog="azimuth"]').first, page.locator(".jog-panel > .reasons")
+    key, why = page.locator('[data-jog="azimuth"]').first, page.locator(".jog-says > .reasons")
     expect(key).to_be_disabled()
     places = page.evaluate(JOG_KEYS)
     box = key.bounding_box()
     assert box is not None
     page.mouse.click(box["x"] + 20, box["y"] + 20)
-    expect(page.locator(".jog-panel")).to_have_attribute("data-told", "")
+    expect(page.locator(".jog")).to_have_attribute("data-told", "")
     expect(why).to_contain_text("The elevation axis does not follow.")
     told = why.bounding_box()
     assert told is not None
@@ -137,8 +137,8 @@ def test_on_a_phone_keys_to_hold_that_are_off_say_why_in_sight(plant: Plant, ope
     assert footer is not None
     assert 0 <= told["y"] < told["y"] + told["height"] <= footer["y"]
     assert page.evaluate(JOG_KEYS) == places
-    page.locator("h1").click()
-    expect(page.locator(".jog-panel")).not_to_have_attribute("data-told", "")
+    page.locator(".jog-safety").click()
+    expect(page.locator(".jog")).not_to_have_attribute("data-told", "")
 
 
 def test_a_second_tap_does_not_start_what_the_first_one_ended(plant: Plant, opened: Opened) -> None:

@@ -22,7 +22,7 @@ HELD_MS = 200
 LATE = """() => {
   const epoch = document.querySelector('input[name="epoch"]').value;
   const headers = { "HX-Request": "true", "X-CSRF-Token": document.documentElement.dataset.csrf };
-  const body = new URLSearchParams({ move: "azimuth-plus", size: "5", key: "late", epoch });
+  const body = new URLSearchParams({ increment: "azimuth +1", key: "late", epoch });
   fetch("/trackers/T1/step", { method: "POST", headers, body }).catch(() => {});
 }"""
 

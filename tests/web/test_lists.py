@@ -102,7 +102,6 @@ LEFT = {
     "_review.html": "what a form would change, asked before it is saved",
     "machine.html": "fields of a form; the page Settings has all settings of a tracker as a file",
     "network.html": "where to go on while a new address is tried",
-    "run.html": "the five steps; the commissioning record has them",
 }
 """Tables and lists without a file of their own, and why."""
 

@@ -31,7 +31,7 @@ async def held(client: httpx.AsyncClient) -> dict[str, str]:
 async def test_each_mode_says_what_it_holds_and_where_that_is_set(client: httpx.AsyncClient) -> None:
     assert await held(client) == {
         "dual": "",
-        "azimuth": "Elevation 32.5°, set on the next page.",
-        "elevation": "Azimuth 170.0°, set on the next page.",
-        "fixed": "Azimuth 170.0° and elevation 32.5°, set on the next page.",
+        "azimuth": "Elevation 32.5°.",
+        "elevation": "Azimuth 170.0°.",
+        "fixed": "Azimuth 170.0°, elevation 32.5°.",
     }

@@ -92,14 +92,14 @@ async def test_clock_is_kept_copied_or_typed(machine: FakeMachine, client: httpx
 
 async def test_zero_and_steps_go_to_the_machine(machine: FakeMachine, client: httpx.AsyncClient) -> None:
     await client.post(f"{T1}/zero", data={"key": "press-1", "confirmed": "yes"})
-    await client.post(f"{T1}/step", data={"move": "elevation-minus", "size": "0.1"})
+    await client.post(f"{T1}/step", data={"increment": "elevation -0.1"})
     assert sent(machine, SetHome)
     assert sent(machine, Step)[0].delta_deg == pytest.approx(-0.1)
     assert machine.orders[0].key == "press-1"
 
 
 async def test_step_of_another_size_is_refused(machine: FakeMachine, client: httpx.AsyncClient) -> None:
-    answer = await client.post(f"{T1}/step", data={"move": "azimuth-plus", "size": "90"})
+    answer = await client.post(f"{T1}/step", data={"increment": "azimuth +90"})
     assert answer.status_code == 422
     assert not machine.orders
 

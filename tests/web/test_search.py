@@ -15,7 +15,7 @@ from tests.fakes import FakeMachine, FakeTracker, Pair, commissioned, fake_app, 
 
 HIT = re.compile(r'<a class="panel hit" href="([^"]+)"')
 NO_PAGES = re.compile(
-    r"^/(api|static|s|manifest|login|prove|setup|kiosk|search|components)\b|/preview$|/orientation$|\.csv$"
+    r"^/(api|static|s|manifest|login|prove|setup|kiosk|search|components)\b|/preview$|/aim$|/orientation$|\.csv$"
     r"|/day$|/list$|\.crt$|/trial$|/compare$"
 )
 """Files, parts of pages, and doors that nobody looks for."""

@@ -82,12 +82,12 @@ async def home(tracker_id: str, press: PressDep) -> Response:
 @router.post("/step")
 @needs(Permission.OPERATE)
 async def step(
-    tracker_id: str, press: PressDep, wanted: Annotated[str, Form(alias="step")] = ""
+    tracker_id: str, press: PressDep, increment: Annotated[str, Form()] = ""
 ) -> Response:
     """Move one axis by a small step."""
-    if wanted not in STEPS:
+    if increment not in STEPS:
         raise NotAcceptable(N_("Choose an increment of 0.1 or 1 degree of one axis."))
-    await press.send(Step(*STEPS[wanted]), tracker_id)
+    await press.send(Step(*STEPS[increment]), tracker_id)
     return press.answer()
 
 
