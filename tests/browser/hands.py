@@ -13,6 +13,11 @@ CONFIRM_MS = 2300
 """Longer than what counts only when it is held for 2 s."""
 MARGIN_PX = 6
 """Beside everything that can be touched."""
+STAYS = """one => {
+  for (let up = one; up; up = up.parentElement) if (getComputedStyle(up).position === "fixed") return true;
+  return false;
+}"""
+"""Whether something stands on the screen, wherever the page is scrolled to."""
 LINK_MEASURED = '#link-quality:is([data-level="1"], [data-level="2"])'
 """Before a page has measured its link, and while it is too slow, a held key begins nothing."""
 
@@ -74,7 +79,7 @@ class Finger(Mouse):
         assert box is not None
         assert size is not None
         away = size["height"] / 2 - box["y"] - box["height"] / 2
-        if abs(away) > size["height"] / 4 and not key.evaluate("one => one.closest('.footer') !== null"):
+        if abs(away) > size["height"] / 4 and not key.evaluate(STAYS):
             swipe = {"x": MARGIN_PX, "y": size["height"] / 2, "yDistance": away, "speed": 4000}
             session.send(
                 "Input.synthesizeScrollGesture",
