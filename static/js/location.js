@@ -1,32 +1,34 @@
-// Step 1: the cross on the map, and the device's own position where the browser gives it.
+// Step 1: what the server reads in the fields is put beside them, what was asked goes with a change, and the device's own place.
 
 import { _ } from "./i18n.js";
 
-const cross = document.getElementById("map-cross");
-const preview = document.getElementById("preview");
 let typing = null;
+let changes = 0;
+let asked = 0;
 
-function moveCross() {
-  const found = preview.querySelector("[data-x]");
-  cross.setAttribute("visibility", found ? "visible" : "hidden");
-  if (!found) return;
-  cross.setAttribute("transform", `translate(${found.dataset.x} ${found.dataset.y})`);
+const field = (name) => document.getElementById(`f-${name}`);
+
+// An answer about what was typed before says nothing of what is typed now.
+function follow() {
+  const found = document.querySelector("#preview .preview[data-zone]");
+  if (!found || asked !== changes) return;
   press("latitude", found.dataset.latitudeSide);
   press("longitude", found.dataset.longitudeSide);
   divide(found.dataset);
-  const byPlace = document.querySelector('#f-time_zone option[value=""]');
-  if (byPlace && document.getElementById("f-time_zone").value === "") byPlace.textContent = found.dataset.zone;
+  const byPlace = field("time_zone").querySelector('option[value=""]');
+  if (byPlace && field("time_zone").value === "") byPlace.textContent = found.dataset.zone;
 }
 
 // A pair in one field goes to both, unless that field is still being typed in.
 function divide({ latitude, longitude }) {
   if (!latitude || (typing && typing === document.activeElement)) return;
-  for (const [name, text] of Object.entries({ latitude, longitude })) document.getElementById(`f-${name}`).value = text;
-  document.getElementById("f-latitude").dispatchEvent(new Event("input", { bubbles: true }));
+  const texts = Object.entries({ latitude, longitude }).filter(([name, text]) => field(name).value !== text);
+  for (const [name, text] of texts) field(name).value = text;
+  if (texts.length) field("latitude").dispatchEvent(new Event("input", { bubbles: true }));
 }
 
 function put(name, value, sides) {
-  document.getElementById(`f-${name}`).value = Math.abs(value).toFixed(5);
+  field(name).value = Math.abs(value).toFixed(5);
   press(name, value < 0 ? sides[1] : sides[0]);
 }
 
@@ -35,13 +37,29 @@ function press(name, side) {
   if (key) key.checked = true;
 }
 
+// What was asked, or found wrong, was about other values.
+function changed(target) {
+  changes += 1;
+  typing = target;
+  document.querySelector("#place-doubts > .question")?.remove();
+  const error = target?.closest(".field")?.querySelector(".field-error");
+  if (!error) return;
+  error.remove();
+  target.removeAttribute("aria-invalid");
+}
+
+function renew() {
+  document.body.dispatchEvent(new CustomEvent("location-typed"));
+}
+
 function take(position, words) {
   const { latitude, longitude, altitude, accuracy } = position.coords;
+  changed(null);
   put("latitude", latitude, "NS");
   put("longitude", longitude, "EW");
-  if (altitude !== null) document.getElementById("f-altitude").value = Math.round(altitude);
-  words.textContent = _("Location taken, accurate to {metres} m. Check it, then save.", { metres: Math.round(accuracy) });
-  document.body.dispatchEvent(new CustomEvent("location-typed"));
+  if (altitude !== null) field("altitude").value = Math.round(altitude);
+  tell(words, _("Location taken, accurate to {metres} m. Check it, then save.", { metres: Math.round(accuracy) }));
+  field("latitude").dispatchEvent(new Event("input", { bubbles: true }));
 }
 
 const REFUSED = {
@@ -50,31 +68,43 @@ const REFUSED = {
   3: _("This device found no location within 20 s. Try again under the open sky, or enter the coordinates."),
 };
 
+function tell(words, text) {
+  const line = document.createElement("p");
+  line.textContent = text;
+  words.replaceChildren(line);
+}
+
 function offerDevicePlace() {
   const holder = document.getElementById("device-place");
   if (!holder) return;
-  const [key, words] = [holder.querySelector("button"), holder.querySelector("p")];
+  const [key, words] = [holder.querySelector("button"), holder.querySelector(".outcome")];
   if (!window.isSecureContext || !navigator.geolocation) {
-    words.textContent = _("This browser shares its location only with pages over HTTPS or on the same computer. Enter the coordinates, or paste them as “41.2867, 36.3300”.");
+    holder.querySelector(".reasons span").textContent = _("This browser shares its location only with pages over HTTPS or on the same computer. Enter the coordinates, or paste them as “41.2867, 36.3300”.");
     return;
   }
-  words.textContent = "";
+  holder.querySelector(".reasons").replaceChildren();
   key.disabled = false;
   key.addEventListener("click", () => {
-    words.textContent = _("Finding the location …");
-    navigator.geolocation.getCurrentPosition((found) => take(found, words), (error) => { words.textContent = REFUSED[error.code] ?? error.message; },
+    tell(words, _("Finding the location …"));
+    navigator.geolocation.getCurrentPosition((found) => take(found, words), (error) => tell(words, REFUSED[error.code] ?? error.message),
       { enableHighAccuracy: true, timeout: 20000, maximumAge: 0 });
   });
 }
 
 function tellDeviceZone() {
-  const field = document.getElementById("device-zone-name");
-  if (field) field.value = Intl.DateTimeFormat().resolvedOptions().timeZone ?? "";
+  const zone = document.getElementById("device-zone-name");
+  if (zone) zone.value = Intl.DateTimeFormat().resolvedOptions().timeZone ?? "";
 }
 
-document.getElementById("place").addEventListener("input", (event) => {
-  typing = event.inputType?.startsWith("insertFromPaste") ? null : event.target;
-});
-document.addEventListener("htmx:after:swap", () => { moveCross(); offerDevicePlace(); tellDeviceZone(); });
+for (const kind of ["input", "change"]) {
+  document.addEventListener(kind, (event) => {
+    if (!event.target.closest("#place")) return;
+    changed(event.inputType?.startsWith("insertFromPaste") ? null : event.target);
+  });
+}
+// Without its question the map has the entered location alone.
+document.addEventListener("click", ({ target }) => { if (target.closest?.("#place-doubts [data-cancel]")) setTimeout(renew); });
+document.addEventListener("htmx:before:request", () => { asked = changes; });
+document.addEventListener("htmx:after:swap", () => { follow(); tellDeviceZone(); });
 tellDeviceZone();
 offerDevicePlace();

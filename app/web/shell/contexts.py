@@ -190,44 +190,6 @@ class ProgressPart:
 
 
 @dataclass(frozen=True, slots=True)
-class LocationPreview:
-    """What a location means: its point on the map and today's sun, all texts in local time.
-
-    `is_pair` tells that one field had both coordinates: the form has each in its own.
-    """
-
-    is_pair: bool
-    x: float
-    y: float
-    normal: str
-    half: str
-    zone: str
-    date: str
-    rise: str
-    transit: str
-    set: str
-    noon_elevation: str
-    polar: str
-    sun_now: str
-    if_swapped: str
-
-
-@dataclass(frozen=True, slots=True)
-class LocationPage:
-    """Step 1; `doubts` are what speaks against the location that was typed."""
-
-    template: ClassVar[str] = "location.html"
-
-    frame: Frame
-    form: Form
-    preview: LocationPreview | None
-    zones: tuple[str, ...]
-    by_place: str
-    revision: int
-    doubts: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True, slots=True)
 class HomingPage:
     """Step 3; `doubts` are the questions before a home position that is likely to be mistaken."""
 

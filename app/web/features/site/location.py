@@ -1,7 +1,7 @@
 """Step 1: where the tracker stands, checked against today's sun and a map before it is saved."""
 
 from dataclasses import dataclass, replace
-from datetime import datetime, time, timedelta
+from datetime import datetime
 from functools import cache
 from typing import Annotated
 from zoneinfo import available_timezones
@@ -11,27 +11,26 @@ from pydantic import BaseModel
 from starlette.requests import Request
 from starlette.responses import Response
 
-from app.base.message import N_, NOTHING, Message, say, with_format
+from app.base.message import N_
 from app.base.permission import Permission
-from app.base.zones import day_in, zone_of
 from app.link.messages import SetLocation, SiteDetail
-from app.sun.events import PolarDay, SunEvents, day_events
-from app.sun.position import InstantRefused, Location, sun_position
+from app.sun.position import Algorithm, Location
 from app.tracker.memory.memory import SiteState, StepName
-from app.tracker.settings.config import TrackerConfig
 from app.tracker.values.typed_numbers import written
-from app.web.features.site.place import place_doubts, refuse_before_asking, swapped, zone_at
+from app.web.features.site.place import Doubt, place_doubts, refuse_before_asking, zone_at
+from app.web.features.site.place_preview import preview_of, sun_rows
+from app.web.features.site.place_question import instead_of, likeliest, question, text_of
+from app.web.features.site.site_map import LARGER_DEG, site_map
 from app.web.http.late_routes import page_router
 from app.web.http.needs import needs
 from app.web.http.whole_forms import MAY_BE_ABSENT
-from app.web.languages import pgettext
 from app.web.shell import coordinates
-from app.web.shell.contexts import LocationPage, LocationPreview
 from app.web.shell.deps import Panel, PanelDep
-from app.web.shell.formats import compass, decimals, formatted, local
+from app.web.shell.formats import offset
 from app.web.shell.forms import Typed
+from app.web.shell.location_contexts import LocationPage, LocationPreview, PlaceQuestion
 from app.web.shell.orders import PressDep
-from app.web.shell.render import go, page
+from app.web.shell.render import go, page, wants_block
 from app.web.shell.wizard import tracker_of, wizard_frame
 
 router = page_router(prefix="/trackers/{tracker_id}/commissioning/location")
@@ -52,6 +51,8 @@ class LocationForm(BaseModel):
     time_zone: str = BY_PLACE
     device_zone: Annotated[str, MAY_BE_ABSENT] = ""
     sun_there: Annotated[str, MAY_BE_ABSENT] = ""
+    asked_for: Annotated[str, MAY_BE_ABSENT] = ""
+    instead: Annotated[str, MAY_BE_ABSENT] = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,13 +62,23 @@ class Read:
     typed: Typed
     location: Location | None
     zone: str
-    doubts: tuple[str, ...] = ()
+    doubts: tuple[Doubt, ...] = ()
     is_pair: bool = False
 
     @property
+    def is_asked_for(self) -> bool:
+        """Return whether the question that the form has is about this location."""
+        asked_for = self.typed.texts["asked_for"]
+        return self.location is not None and asked_for == text_of(self.location, self.zone)
+
+    @property
     def is_asked(self) -> bool:
-        """Return whether it must be confirmed that the sun is where the page says, and was not yet."""
-        return bool(self.doubts) and self.typed.texts["sun_there"] != "yes"
+        """Return whether it must be confirmed that the location is right, and was not yet.
+
+        Who confirms without a question, as a program does, confirms what is sent.
+        """
+        has_answer = self.is_asked_for or not self.typed.texts["asked_for"]
+        return bool(self.doubts) and not (has_answer and self.typed.texts["sun_there"] == "yes")
 
 
 @router.get("")
@@ -85,7 +96,10 @@ async def preview(
 ) -> Response:
     """Show what the typed location would mean, without saving it."""
     detail = await built.machine.detail()
-    return _answer(request, tracker_id, detail, read(typed), built, block="preview")
+    found = read(typed)
+    if found.is_asked_for:
+        found = _doubted(found, detail.site, built)
+    return _answer(request, tracker_id, detail, found, built, block="preview")
 
 
 @router.post("")
@@ -95,11 +109,11 @@ async def save(
 ) -> Response:
     """Save the location and go on to the clock."""
     detail = await built.machine.detail()
-    found = _doubted(read(typed), detail.site, built)
+    found = _doubted(_meant(typed), detail.site, built)
     if found.location is not None and found.is_asked:
         refuse_before_asking(found.location, detail, built.machine.latest())
     if found.location is None or found.is_asked:
-        return _answer(press.request, tracker_id, detail, found, built, block="form", status=422)
+        return _answer(press.request, tracker_id, detail, found, built, block="step", status=422)
     await press.send(SetLocation(found.location, found.zone))
     return go(press.request, f"/trackers/{tracker_id}/commissioning/clock")
 
@@ -120,6 +134,15 @@ def read(form: LocationForm) -> Read:
         return Read(typed, None, "UTC")
     place = Location(latitude, longitude, altitude)
     return Read(typed, place, form.time_zone or proposed(latitude, longitude), is_pair=bool(pair))
+
+
+def _meant(form: LocationForm) -> Read:
+    """Return what was typed, or the location that an answer to the question names instead."""
+    found = read(form)
+    if not form.instead or found.location is None:
+        return found
+    texts = instead_of(found.location, form.instead) | {"sun_there": "", "asked_for": ""}
+    return read(form.model_copy(update=texts))
 
 
 def _sides(texts: dict[str, str]) -> dict[str, str]:
@@ -195,96 +218,43 @@ def _answer(
     status: int = 200,
 ) -> Response:
     tracker = tracker_of(detail, tracker_id)
-    frame = wizard_frame(request, tracker, StepName.LOCATION)
     untouched = not any(found.typed.texts[name] for name in ("latitude", "longitude"))
     if untouched and status == 200:
         found.typed.errors.clear()
-    now = built.site_now()
+    now, algorithm = built.site_now(), tracker.state.config.algorithm
+    likely = likeliest(found.doubts) if found.is_asked else None
+    mistake = likely.mistake if likely else None
+    places = [place for place in (found.location, likely.other if likely else None) if place]
+    rows = sun_rows(places, mistake, algorithm, now)
     context = LocationPage(
-        frame=frame,
+        frame=wizard_frame(request, tracker, StepName.LOCATION),
         form=found.typed.form(NAMES),
-        preview=_preview(found, tracker.state.config, now),
+        preview=_preview(found, algorithm, now),
+        map=site_map(algorithm, now, places, mistake, is_asked=found.is_asked),
+        larger=site_map(algorithm, now, places, mistake, is_asked=found.is_asked, width_deg=LARGER_DEG),
+        rows=rows,
         zones=zones(),
-        by_place=found.zone if found.location else "",
+        by_place=f"{found.zone} {offset(now, found.zone)}" if found.location else "",
         revision=detail.site.location_revision,
-        doubts=found.doubts,
+        question=_question(found, detail.site, built, is_compared=not all(row.is_down for row in rows)),
+        is_part=block is not None and wants_block(request),
     )
     return page(request, context, block=block, status=status)
 
 
-def _preview(found: Read, config: TrackerConfig, now: datetime) -> LocationPreview | None:
-    place = found.location
-    if place is None:
+def _preview(found: Read, algorithm: Algorithm, now: datetime) -> LocationPreview | None:
+    if found.location is None:
         return None
-    midnight = datetime.combine(day_in(found.zone, now), time(), zone_of(found.zone))
-    events = day_events(config.algorithm, place, midnight, midnight + timedelta(days=1))
-    noon_deg = events.transit_elevation_deg
-    return LocationPreview(
-        is_pair=found.is_pair,
-        x=10 * (place.longitude_deg + 180),
-        y=10 * (90 - place.latitude_deg),
-        normal=normal_form(place),
-        half=_half(place),
-        zone=found.zone,
-        date=local(now, found.zone, "%Y-%m-%d"),
-        rise=_time(events.rise, found.zone),
-        transit=_time(events.transit, found.zone),
-        set=_time(events.set, found.zone),
-        noon_elevation="–" if noon_deg is None else f"{decimals(noon_deg, 1)}°",
-        polar=_polar(events),
-        sun_now=_sun_now(place, config, now),
-        if_swapped="" if swapped(place) is None else _sun_now(swapped(place) or place, config, now),
-    )
+    return preview_of(found.location, found.zone, algorithm, now, is_pair=found.is_pair)
 
 
-def _sun_now(place: Location, config: TrackerConfig, now: datetime) -> Message:
-    """Return where somebody at a place sees the sun, nothing while the clock shows years of no known sun."""
-    try:
-        sun = sun_position(config.algorithm, place, now)
-    except InstantRefused:
-        return NOTHING
-    height_deg = sun.apparent_elevation_deg
-    if height_deg <= 0.0:
-        return say("{height_deg}° below the horizon", height_deg=with_format(abs(height_deg), ".0f"))
-    return say(
-        "{height_deg}° high in the {azimuth_deg}, at azimuth {azimuth_deg2}°",
-        height_deg=with_format(height_deg, ".0f"),
-        azimuth_deg=compass(sun.azimuth_deg),
-        azimuth_deg2=with_format(sun.azimuth_deg, ".0f"),
-    )
+def _question(found: Read, site: SiteState, built: Panel, *, is_compared: bool) -> PlaceQuestion | None:
+    """Return what is asked about a location, None where nothing is or it was answered."""
+    if found.location is None or not found.is_asked:
+        return None
 
+    def doubts_of(other: Location) -> tuple[Doubt, ...]:
+        zone = found.typed.texts["time_zone"] or proposed(other.latitude_deg, other.longitude_deg)
+        return _doubted(replace(found, location=other, zone=zone), site, built).doubts
 
-def normal_form(place: Location) -> str:
-    """Return a place in degrees, minutes and seconds, as on a map."""
-    return f"{_dms(place.latitude_deg, 'NS')}  {_dms(place.longitude_deg, 'EW')}"
-
-
-def _dms(value_deg: float, sides: str) -> str:
-    total = round(abs(value_deg) * 36000)
-    minutes, tenths = divmod(total, 600)
-    side = pgettext("compass", sides[value_deg < 0])
-    return f"{minutes // 60}° {minutes % 60:02d}′ {formatted('%04.1f', tenths / 10)}″ {side}"
-
-
-def _half(place: Location) -> Message:
-    if place.latitude_deg >= 0:
-        if place.longitude_deg >= 0:
-            return N_("northern hemisphere, east of Greenwich")
-        return N_("northern hemisphere, west of Greenwich")
-    if place.longitude_deg >= 0:
-        return N_("southern hemisphere, east of Greenwich")
-    return N_("southern hemisphere, west of Greenwich")
-
-
-def _time(at: datetime | None, zone: str) -> str:
-    return "–" if at is None else local(at, zone, "%H:%M")
-
-
-def _polar(events: SunEvents) -> Message:
-    match events.polar:
-        case PolarDay.DAY:
-            return N_("The sun does not set today: polar day.")
-        case PolarDay.NIGHT:
-            return N_("The sun does not rise today: polar night.")
-        case None:
-            return NOTHING
+    return question(found.location, found.zone, found.doubts, doubts_of, is_compared=is_compared)

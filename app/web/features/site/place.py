@@ -1,12 +1,12 @@
 """Whether a location is likely to be mistaken: swapped numbers, a lost sign, another part of the Earth."""
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
-from enum import Enum, auto
+from enum import Enum, StrEnum, auto
 from math import asin, cos, radians, sin, sqrt
 
-from app.base.message import N_, say, with_format
+from app.base.message import N_, Message, say, with_format
 from app.base.startup import late
 from app.base.zones import zone_of
 from app.link.messages import SiteDetail
@@ -24,6 +24,34 @@ FAR_KM = 100.0
 EARTH_KM = 6371.0
 
 
+class Mistake(StrEnum):
+    """How a location is likely to be mistaken, and so what the right one is."""
+
+    EAST_WEST = "east_west"
+    NORTH_SOUTH = "north_south"
+    SWAPPED = "swapped"
+
+
+@dataclass(frozen=True, slots=True)
+class Doubt:
+    """What speaks against a location; the likely mistake and the location without it where they are known."""
+
+    sentence: Message
+    mistake: Mistake | None = None
+    other: Location | None = None
+
+
+def mended(place: Location, mistake: Mistake) -> Location | None:
+    """Return a location without a mistake, None where that is no place."""
+    match mistake:
+        case Mistake.EAST_WEST:
+            return replace(place, longitude_deg=-place.longitude_deg)
+        case Mistake.NORTH_SOUTH:
+            return replace(place, latitude_deg=-place.latitude_deg)
+        case Mistake.SWAPPED:
+            return swapped(place)
+
+
 def swapped(place: Location) -> Location | None:
     """Return the place with latitude and longitude exchanged, None where that is no place."""
     if abs(place.longitude_deg) > 90.0:
@@ -33,47 +61,49 @@ def swapped(place: Location) -> Location | None:
 
 def place_doubts(
     place: Location, time_zone: str, now: datetime, *, before: Location | None = None, device_zone: str = ""
-) -> tuple[str, ...]:
-    """Return what speaks against a location, as sentences; it may be right all the same.
+) -> tuple[Doubt, ...]:
+    """Return what speaks against a location; it may be right all the same.
 
     `before` is the location that is stored, `device_zone` what the clock of the device at hand keeps.
     """
     clocks = (time_zone, device_zone)
     mistaken = (*_swap_doubts(place, clocks, before), *_side_doubts(place, device_zone, now, before))
-    at_sea = (N_("This location is in the sea."),) if not mistaken and _is_sea(place) else ()
-    far = _far_doubts(place, before)
-    return (*mistaken, *at_sea, *far, *_zone_doubts(place, time_zone, device_zone, now))
+    others = (*_far_doubts(place, before), *_zone_doubts(place, time_zone, device_zone, now))
+    if not mistaken and _is_sea(place):
+        others = (N_("This location is in the sea."), *others)
+    found = (Doubt(sentence, mistake, mended(place, mistake)) for mistake, sentence in mistaken)
+    return (*found, *map(Doubt, others))
 
 
-def _swap_doubts(place: Location, clocks: tuple[str, str], before: Location | None) -> Iterator[str]:
+def _swap_doubts(
+    place: Location, clocks: tuple[str, str], before: Location | None
+) -> Iterator[tuple[Mistake, Message]]:
     other = swapped(place)
     if other is None:
         return
     if before is not None and _is_near(other, before) and not _is_near(place, before):
-        yield N_("These are the coordinates of the stored location with latitude and longitude swapped.")
+        said = N_("These are the coordinates of the stored location with latitude and longitude swapped.")
+        yield Mistake.SWAPPED, said
     elif _zone_at(place).startswith(SEA) and not _zone_at(other).startswith(SEA):
-        yield N_("This location is in the sea; with latitude and longitude swapped, it is on land.")
+        said = N_("This location is in the sea; with latitude and longitude swapped, it is on land.")
+        yield Mistake.SWAPPED, said
     elif _zone_at(other) in clocks and _zone_at(place) not in clocks:
-        yield say(
+        said = say(
             "With latitude and longitude swapped, the location is in the time zone {other}.",
             other=_zone_at(other),
         )
+        yield Mistake.SWAPPED, said
 
 
-def _side_doubts(place: Location, device_zone: str, now: datetime, before: Location | None) -> Iterator[str]:
+def _side_doubts(
+    place: Location, device_zone: str, now: datetime, before: Location | None
+) -> Iterator[tuple[Mistake, Message]]:
     """Return that east and west, or north and south, are likely to be exchanged."""
-    east = _likelier(place, replace(place, longitude_deg=-place.longitude_deg), device_zone, now, before)
-    north = _likelier(place, replace(place, latitude_deg=-place.latitude_deg), device_zone, now, before)
-    if east is _Likelier.STORED:
-        yield N_("These are the coordinates of the stored location with east and west swapped.")
-    elif east is _Likelier.CLOCKS:
-        yield N_("With east and west swapped, the location is in the time zone of this device.")
-    elif east is _Likelier.LAND:
-        yield N_("This location is in the sea; with east and west swapped, it is on land.")
-    if north is _Likelier.STORED:
-        yield N_("These are the coordinates of the stored location with north and south swapped.")
-    elif north is _Likelier.CLOCKS:
-        yield N_("With north and south swapped, the location is in the time zone of this device.")
+    for mistake, sentences in SIDES.items():
+        other = mended(place, mistake)
+        likelier = other and _likelier(place, other, device_zone, now, before)
+        if likelier and likelier in sentences:
+            yield mistake, sentences[likelier]
 
 
 def refuse_before_asking(location: Location, detail: SiteDetail, now: SiteSnapshot | None) -> None:
@@ -93,6 +123,24 @@ class _Likelier(Enum):
     LAND = auto()
 
 
+SIDES = {
+    Mistake.EAST_WEST: {
+        _Likelier.STORED: N_("These are the coordinates of the stored location with east and west swapped."),
+        _Likelier.CLOCKS: N_("With east and west swapped, the location is in the time zone of this device."),
+        _Likelier.LAND: N_("This location is in the sea; with east and west swapped, it is on land."),
+    },
+    Mistake.NORTH_SOUTH: {
+        _Likelier.STORED: N_(
+            "These are the coordinates of the stored location with north and south swapped."
+        ),
+        _Likelier.CLOCKS: N_(
+            "With north and south swapped, the location is in the time zone of this device."
+        ),
+    },
+}
+"""What is said of the other side; that it is on land says nothing where most of the half is sea."""
+
+
 def _likelier(
     place: Location, other: Location, device_zone: str, now: datetime, before: Location | None
 ) -> _Likelier | None:
@@ -105,14 +153,14 @@ def _likelier(
     return _Likelier.LAND if _is_sea(place) and not _is_sea(other) else None
 
 
-def _far_doubts(place: Location, before: Location | None) -> Iterator[str]:
+def _far_doubts(place: Location, before: Location | None) -> Iterator[Message]:
     """Return that the stored location is far away."""
     if before is None:
         return
     apart_km = round(_apart_km(place, before), -1)
     if apart_km > FAR_KM:
         yield say(
-            "This location is {apart_km} km away from the stored location.",
+            "The stored location is {apart_km} km away.",
             apart_km=with_format(apart_km, ".0f"),
         )
 
@@ -129,12 +177,11 @@ def _is_sea(place: Location) -> bool:
     return _zone_at(place).startswith(SEA)
 
 
-def _zone_doubts(place: Location, time_zone: str, device_zone: str, now: datetime) -> Iterator[str]:
+def _zone_doubts(place: Location, time_zone: str, device_zone: str, now: datetime) -> Iterator[Message]:
     if not time_zone.startswith(PLACELESS) and abs(_solar_difference_h(place, time_zone, now)) > MOST_APART_H:
         yield (
             say(
-                "At this longitude, solar noon is at {place} in the time zone {time_zone}: check for "
-                "a missing sign, or choose another time zone.",
+                "Solar noon there is at {place} in the time zone {time_zone}: check sign and zone.",
                 place=_solar_noon(place, time_zone, now),
                 time_zone=time_zone,
             )
@@ -142,8 +189,7 @@ def _zone_doubts(place: Location, time_zone: str, device_zone: str, now: datetim
     elif device_zone and abs(_solar_difference_h(place, device_zone, now)) > MOST_APART_H:
         yield (
             say(
-                "At this longitude, solar noon is at {place} by the clock of this device: are you at "
-                "the tracker?",
+                "Solar noon there is at {place} by the clock of this device: are you at the tracker?",
                 place=_solar_noon(place, device_zone, now),
             )
         )

@@ -161,9 +161,9 @@ async def set_location(
     before = (await machine.detail()).site.location
     doubts = place_doubts(location, place.time_zone, built.site_now(), before=before)
     if doubts and not place.confirmed:
-        raise NotAcceptable(
-            join(" ", (*doubts, N_("If the location is correct, send the request again with `confirmed`.")))
-        )
+        sentences = [doubt.sentence for doubt in doubts]
+        how = N_("If the location is correct, send the request again with `confirmed`.")
+        raise NotAcceptable(join(" ", (*sentences, how)))
     return listed(await sender.send(SetLocation(location, place.time_zone)))
 
 

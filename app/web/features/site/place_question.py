@@ -1,0 +1,115 @@
+"""What is asked before a location is saved that is likely to be mistaken, and what its answers mean."""
+
+from collections.abc import Callable, Sequence
+
+from app.base.message import N_, NOTHING, Message
+from app.sun.position import Location
+from app.web.features.site.place import Doubt, Mistake, mended
+from app.web.shell import coordinates
+from app.web.shell.location_contexts import PlaceQuestion
+
+MOST = 3
+"""So many sentences are told at the most."""
+ROOM_WORDS, ROOM_AT_NIGHT = 22, 15
+"""So many words beside the page's own are read at a glance; at night, the rows of the sun have more words."""
+SWAP = "swapped"
+DOUBTED = {
+    Mistake.EAST_WEST: "longitude",
+    Mistake.NORTH_SOUTH: "latitude",
+    Mistake.SWAPPED: "latitude longitude",
+}
+USE = {
+    "N": N_("Use north"),
+    "S": N_("Use south"),
+    "E": N_("Use east"),
+    "W": N_("Use west"),
+    SWAP: N_("Swap coordinates"),
+}
+KEEP = {"N": N_("Keep north"), "S": N_("Keep south"), "E": N_("Keep east"), "W": N_("Keep west")}
+KEEP_THIS = N_("Keep this location")
+MISTAKES = {
+    "N": Mistake.NORTH_SOUTH,
+    "S": Mistake.NORTH_SOUTH,
+    "E": Mistake.EAST_WEST,
+    "W": Mistake.EAST_WEST,
+    SWAP: Mistake.SWAPPED,
+}
+
+
+def text_of(place: Location, time_zone: str) -> str:
+    """Return what stands for a location that was asked about: an answer counts for no other."""
+    return f"{place.latitude_deg:.7f} {place.longitude_deg:.7f} {time_zone}"
+
+
+def likeliest(doubts: Sequence[Doubt]) -> Doubt | None:
+    """Return the first doubt that knows what was meant, None if none does."""
+    return next((doubt for doubt in doubts if doubt.other is not None), None)
+
+
+def question(
+    place: Location,
+    time_zone: str,
+    doubts: Sequence[Doubt],
+    doubts_of: Callable[[Location], Sequence[Doubt]],
+    *,
+    is_compared: bool,
+) -> PlaceQuestion:
+    """Return what is asked about a location; what the likelier location would mend is not told besides."""
+    asked_for = text_of(place, time_zone)
+    likely = likeliest(doubts)
+    if likely is None or likely.mistake is None or likely.other is None:
+        told = _told([doubt.sentence for doubt in doubts], is_compared=is_compared)
+        return PlaceQuestion(told, "", NOTHING, KEEP_THIS, asked_for, "latitude longitude", is_compared)
+    left = {doubt.sentence.template for doubt in doubts_of(likely.other)}
+    rest = [doubt.sentence for doubt in doubts if doubt is not likely and doubt.sentence.template in left]
+    instead = _answer(likely.other, likely.mistake)
+    return PlaceQuestion(
+        _told([likely.sentence, *rest], is_compared=is_compared),
+        instead,
+        USE[instead],
+        _keep(place, likely.mistake),
+        asked_for,
+        DOUBTED[likely.mistake],
+        is_compared,
+    )
+
+
+def _told(sentences: Sequence[Message], *, is_compared: bool) -> tuple[Message, ...]:
+    """Return the first of these sentences, and of the others those for which there is room."""
+    left = (ROOM_WORDS if is_compared else ROOM_AT_NIGHT) - len(sentences[0].split())
+    told = [sentences[0]]
+    for sentence in sentences[1:]:
+        left -= len(sentence.split())
+        if left >= 0:
+            told.append(sentence)
+    return tuple(told[:MOST])
+
+
+def _answer(place: Location, mistake: Mistake) -> str:
+    match mistake:
+        case Mistake.EAST_WEST:
+            return "W" if place.longitude_deg < 0 else "E"
+        case Mistake.NORTH_SOUTH:
+            return "S" if place.latitude_deg < 0 else "N"
+        case Mistake.SWAPPED:
+            return SWAP
+
+
+def _keep(place: Location, mistake: Mistake) -> Message:
+    return KEEP.get(_answer(place, mistake), KEEP_THIS)
+
+
+def instead_of(place: Location, answer: str) -> dict[str, str]:
+    """Return the texts of the form with the location that an answer names, none for an unknown answer."""
+    mistake = MISTAKES.get(answer)
+    other = mended(place, mistake) if mistake else None
+    if mistake is None or other is None:
+        return {}
+    if mistake is not Mistake.SWAPPED and _answer(other, mistake) != answer:
+        other = place
+    return {
+        "latitude": coordinates.degrees_text(abs(other.latitude_deg)),
+        "longitude": coordinates.degrees_text(abs(other.longitude_deg)),
+        "latitude_side": "S" if other.latitude_deg < 0 else "N",
+        "longitude_side": "W" if other.longitude_deg < 0 else "E",
+    }
