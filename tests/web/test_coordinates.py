@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 
 from app.link.messages import SetLocation
 from app.sun.position import Location
-from app.web.features.site.location import LocationForm, normal_form, read
+from app.web.features.site.location import LocationForm, read
+from app.web.features.site.place_preview import normal_form
 from app.web.languages import CATALOGUE
 from app.web.languages.catalogue import catalogue_of
 from app.web.shell import coordinates

@@ -10,7 +10,7 @@ from app.link.messages import SetLocation
 from app.sun.position import Location
 from app.tracker.memory.memory import CommissioningLock
 from app.web.features.site.location import LocationForm
-from app.web.features.site.place import place_doubts
+from app.web.features.site.place import Mistake, place_doubts
 from tests.fakes import FakeMachine
 from tests.fault_result import FaultResult
 
@@ -22,6 +22,11 @@ HTMX = {"HX-Request": "true"}
 
 def saved(machine: FakeMachine) -> list[SetLocation]:
     return [order.command for order in machine.orders if isinstance(order.command, SetLocation)]
+
+
+def said_of(place: Location, time_zone: str, before: Location | None = None, device: str = "") -> list[str]:
+    doubts = place_doubts(place, time_zone, SUMMER, before=before, device_zone=device)
+    return [doubt.sentence for doubt in doubts]
 
 
 def form(latitude_deg: float, longitude_deg: float, **others: str) -> dict[str, str]:
@@ -37,7 +42,7 @@ def form(latitude_deg: float, longitude_deg: float, **others: str) -> dict[str, 
         (
             Location(41.2867, -36.33),
             "Europe/Istanbul",
-            "solar noon is at 17:25 in the time zone Europe/Istanbul",
+            "Solar noon there is at 17:25 in the time zone Europe/Istanbul",
         ),
         (Location(-33.92, 18.42), "Africa/Johannesburg", ""),
         (Location(1.87, -157.4), "Pacific/Kiritimati", ""),
@@ -48,26 +53,47 @@ def form(latitude_deg: float, longitude_deg: float, **others: str) -> dict[str, 
     ],
 )
 def test_what_speaks_against_a_place(place: Location, time_zone: str, said: str) -> None:
-    doubts = place_doubts(place, time_zone, SUMMER)
-    assert (said in " ".join(doubts)) if said else doubts == ()
+    sentences = said_of(place, time_zone)
+    assert (said in " ".join(sentences)) if said else sentences == []
 
 
 def test_numbers_of_the_stored_place_exchanged_and_a_device_far_away() -> None:
     exchanged = Location(36.33, 41.2867)
-    assert "stored location" in place_doubts(exchanged, "UTC", SUMMER, before=SAMSUN)[0]
-    assert place_doubts(SAMSUN, "UTC", SUMMER, before=exchanged)[0].startswith(
-        "These are the coordinates of the stored location"
-    )
-    (sign, far) = place_doubts(Location(41.2867, -36.33), "Etc/GMT+2", SUMMER, before=SAMSUN)
+    assert "stored location" in said_of(exchanged, "UTC", SAMSUN)[0]
+    assert said_of(SAMSUN, "UTC", exchanged)[0].startswith("These are the coordinates of the stored location")
+    (sign, far) = said_of(Location(41.2867, -36.33), "Etc/GMT+2", SAMSUN)
     assert sign == "These are the coordinates of the stored location with east and west swapped."
-    assert far == "This location is 5880 km away from the stored location."
-    south = place_doubts(Location(-41.2867, 36.33), "Etc/GMT-2", SUMMER, before=SAMSUN)
+    assert far == "The stored location is 5880 km away."
+    south = said_of(Location(-41.2867, 36.33), "Etc/GMT-2", SAMSUN)
     assert south[0] == "These are the coordinates of the stored location with north and south swapped."
-    west = place_doubts(Location(52.0, -7.9), "Europe/Dublin", SUMMER, device_zone="Europe/Amsterdam")
+    west = said_of(Location(52.0, -7.9), "Europe/Dublin", device="Europe/Amsterdam")
     assert west[0].startswith("With east and west swapped, the location is in the time zone of this device")
-    assert place_doubts(SAMSUN, "UTC", SUMMER, before=Location(41.3, 36.4)) == ()
-    (far,) = place_doubts(SAMSUN, "Europe/Istanbul", SUMMER, device_zone="America/New_York")
+    assert said_of(SAMSUN, "UTC", Location(41.3, 36.4)) == []
+    (far,) = said_of(SAMSUN, "Europe/Istanbul", device="America/New_York")
     assert "are you at the tracker" in far
+
+
+def test_the_zone_of_the_device_counts_for_more_than_that_another_location_is_on_land() -> None:
+    doubts = place_doubts(Location(47.0, -19.0), "Etc/GMT+1", SUMMER, device_zone="Europe/Budapest")
+    assert [doubt.mistake for doubt in doubts[:2]] == [Mistake.EAST_WEST, Mistake.SWAPPED]
+
+
+@pytest.mark.parametrize(
+    ("place", "before", "mistake", "other"),
+    [
+        (Location(41.2867, -36.33), None, Mistake.EAST_WEST, SAMSUN),
+        (Location(41.2867, -36.33), SAMSUN, Mistake.EAST_WEST, SAMSUN),
+        (Location(-41.2867, 36.33), SAMSUN, Mistake.NORTH_SOUTH, SAMSUN),
+        (Location(36.33, 41.2867), SAMSUN, Mistake.SWAPPED, SAMSUN),
+        (Location(0.0, 170.0), None, None, None),
+        (Location(52.0, 5.0), SAMSUN, None, None),
+    ],
+)
+def test_a_doubt_knows_the_mistake_and_what_was_meant(
+    place: Location, before: Location | None, mistake: Mistake | None, other: Location | None
+) -> None:
+    first = place_doubts(place, "UTC", SUMMER, before=before)[0]
+    assert (first.mistake, first.other) == (mistake, other)
 
 
 @pytest.mark.fault(37)
@@ -82,7 +108,7 @@ async def test_exchanged_numbers_are_asked_about_with_the_sun_there_now(
     assert answer.status_code == 422
     assert not saved(machine)
     assert "latitude and longitude swapped" in answer.text
-    assert "Current sun position there:" in answer.text
+    assert answer.text.count('<th scope="row"') == 2, "the sun now at both locations"
     assert f'value="{place.longitude_deg}"' in answer.text, "what was typed stays"
     fault.prevented("refused when saved")
     fault.shows("These are the coordinates of the stored location with latitude and longitude swapped.")
@@ -132,10 +158,10 @@ async def test_a_location_that_cannot_be_saved_is_refused_before_it_is_asked_abo
     assert answer.status_code == 409
     assert "T2 is tracking the sun for the present location." in answer.text
     assert "End tracking of T2 first." in answer.text
-    assert "place-doubts" not in answer.text
+    assert "data-question" not in answer.text
 
     machine.rest()
-    assert "place-doubts" in (await client.post(PAGE, data=typed, headers=HTMX)).text
+    assert "data-question" in (await client.post(PAGE, data=typed, headers=HTMX)).text
 
     kept = machine.trackers["T1"]
     kept.memory = replace(kept.memory, settings_lock=CommissioningLock("ada", SUMMER))
@@ -144,5 +170,5 @@ async def test_a_location_that_cannot_be_saved_is_refused_before_it_is_asked_abo
     assert "The settings of North field were locked by ada" in answer.text
     stored = form(place.latitude_deg, place.longitude_deg, altitude=str(place.altitude_m))
     zone = stored | {"time_zone": "Pacific/Auckland"}
-    assert "place-doubts" in (await client.post(PAGE, data=zone, headers=HTMX)).text, "only the zone differs"
+    assert "data-question" in (await client.post(PAGE, data=zone, headers=HTMX)).text, "only the zone differs"
     assert not saved(machine)

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
-from enum import Enum, StrEnum, auto
+from enum import IntEnum, StrEnum, auto
 from math import asin, cos, radians, sin, sqrt
 
 from app.base.message import N_, Message, say, with_format
@@ -41,6 +41,14 @@ class Doubt:
     other: Location | None = None
 
 
+class _Likelier(IntEnum):
+    """Why another place is likelier than the one that was given, the strongest reason first."""
+
+    STORED = auto()
+    CLOCKS = auto()
+    LAND = auto()
+
+
 def mended(place: Location, mistake: Mistake) -> Location | None:
     """Return a location without a mistake, None where that is no place."""
     match mistake:
@@ -67,43 +75,44 @@ def place_doubts(
     `before` is the location that is stored, `device_zone` what the clock of the device at hand keeps.
     """
     clocks = (time_zone, device_zone)
-    mistaken = (*_swap_doubts(place, clocks, before), *_side_doubts(place, device_zone, now, before))
+    mistaken = [*_side_doubts(place, device_zone, now, before), *_swap_doubts(place, clocks, before)]
+    mistaken.sort(key=lambda one: one[0])
     others = (*_far_doubts(place, before), *_zone_doubts(place, time_zone, device_zone, now))
     if not mistaken and _is_sea(place):
         others = (N_("This location is in the sea."), *others)
-    found = (Doubt(sentence, mistake, mended(place, mistake)) for mistake, sentence in mistaken)
+    found = (Doubt(sentence, mistake, mended(place, mistake)) for _, mistake, sentence in mistaken)
     return (*found, *map(Doubt, others))
 
 
 def _swap_doubts(
     place: Location, clocks: tuple[str, str], before: Location | None
-) -> Iterator[tuple[Mistake, Message]]:
+) -> Iterator[tuple[_Likelier, Mistake, Message]]:
     other = swapped(place)
     if other is None:
         return
     if before is not None and _is_near(other, before) and not _is_near(place, before):
         said = N_("These are the coordinates of the stored location with latitude and longitude swapped.")
-        yield Mistake.SWAPPED, said
+        yield _Likelier.STORED, Mistake.SWAPPED, said
     elif _zone_at(place).startswith(SEA) and not _zone_at(other).startswith(SEA):
         said = N_("This location is in the sea; with latitude and longitude swapped, it is on land.")
-        yield Mistake.SWAPPED, said
+        yield _Likelier.LAND, Mistake.SWAPPED, said
     elif _zone_at(other) in clocks and _zone_at(place) not in clocks:
         said = say(
             "With latitude and longitude swapped, the location is in the time zone {other}.",
             other=_zone_at(other),
         )
-        yield Mistake.SWAPPED, said
+        yield _Likelier.CLOCKS, Mistake.SWAPPED, said
 
 
 def _side_doubts(
     place: Location, device_zone: str, now: datetime, before: Location | None
-) -> Iterator[tuple[Mistake, Message]]:
+) -> Iterator[tuple[_Likelier, Mistake, Message]]:
     """Return that east and west, or north and south, are likely to be exchanged."""
     for mistake, sentences in SIDES.items():
         other = mended(place, mistake)
         likelier = other and _likelier(place, other, device_zone, now, before)
         if likelier and likelier in sentences:
-            yield mistake, sentences[likelier]
+            yield likelier, mistake, sentences[likelier]
 
 
 def refuse_before_asking(location: Location, detail: SiteDetail, now: SiteSnapshot | None) -> None:
@@ -113,14 +122,6 @@ def refuse_before_asking(location: Location, detail: SiteDetail, now: SiteSnapsh
     states = {tracker_id: tracker.state for tracker_id, tracker in detail.trackers.items()}
     if reasons := against_another_location(states, doing(now.trackers if now else ())):
         raise CommandRejected(*reasons)
-
-
-class _Likelier(Enum):
-    """Why another place is likelier than the one that was given."""
-
-    STORED = auto()
-    CLOCKS = auto()
-    LAND = auto()
 
 
 SIDES = {
