@@ -35,6 +35,14 @@ def middle(thing: Locator) -> tuple[float, float]:
     return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
 
 
+def confirm(page: Page, key: Locator, passes: Callable[[int], object]) -> None:
+    """Hold a key that asks for 2 s, on a page that moves nothing, as long as it takes."""
+    page.mouse.move(*middle(key))
+    page.mouse.down()
+    passes(CONFIRM_MS)
+    page.mouse.up()
+
+
 @dataclass
 class Mouse:
     """What a technician does with a page; `passes` lets so many milliseconds pass: `Stage.advance`."""

@@ -61,13 +61,17 @@ def test_a_pasted_pair_fills_both_fields_and_is_saved_as_it_is_shown(plant: Plan
     expect(page.locator("#f-longitude")).to_have_value("36.33")
     expect(page.locator("input[name=latitude_side]").nth(0)).to_be_checked()
     expect(page.locator("input[name=longitude_side]").nth(1)).to_be_checked()
-    expect(page.locator("#preview")).to_contain_text("41° 17′ 12.1″ N  36° 19′ 48.0″ W")
+    expect(page.locator("#larger")).to_contain_text("41° 17′ 12.1″ N  36° 19′ 48.0″ W")
     pasted.press("Enter")
-    page.get_by_label("The location is correct").check(force=True)
+    instead = page.get_by_role("button", name="Use east")
+    expect(instead).to_be_visible()
     pasted.press("Enter")
+    expect(instead).to_be_visible()
+    assert not [order for order in plant.machine.orders if isinstance(order.command, SetLocation)]
+    instead.click()
     page.wait_for_url("**/commissioning/clock")
     (saved,) = [order.command for order in plant.machine.orders if isinstance(order.command, SetLocation)]
-    assert (saved.location.latitude_deg, saved.location.longitude_deg) == pytest.approx((41.2867, -36.33))
+    assert (saved.location.latitude_deg, saved.location.longitude_deg) == pytest.approx((41.2867, 36.33))
 
 
 def test_what_is_typed_is_explained_and_divided_once_its_field_is_left(
@@ -79,10 +83,10 @@ def test_what_is_typed_is_explained_and_divided_once_its_field_is_left(
     expect(page.locator("#preview")).to_contain_text("only the last number may have decimals")
     latitude.fill("35 18 29 S")
     expect(page.locator("input[name=latitude_side]").nth(1)).to_be_checked()
-    expect(page.locator("#preview")).to_contain_text("southern")
+    expect(page.locator("#larger")).to_contain_text("35° 18′ 29.0″ S")
     page.locator("input[name=latitude_side]").nth(0).check(force=True)
     latitude.fill("39.9208 32.8541")
-    expect(page.locator("#preview")).to_contain_text("39° 55′ 14.9″ N  32° 51′ 14.8″ E")
+    expect(page.locator("#larger")).to_contain_text("39° 55′ 14.9″ N  32° 51′ 14.8″ E")
     expect(latitude).to_have_value("39.9208 32.8541")
     latitude.blur()
     expect(latitude).to_have_value("39.9208")

@@ -23,8 +23,8 @@ NOTES = {
     "location": (
         "Everything begins with the location: the sun's position follows from it. Type your own latitude "
         "and longitude instead of these, and choose the side of the equator and of Greenwich. Before "
-        "you save, compare today's sunrise, noon, and sunset with what you know: a lost minus sign "
-        "shows at once."
+        "you save, compare the map and the position of the sun now with what you see: a wrong side shows at "
+        "once. *Show larger map* adds today's sunrise, noon, and sunset."
     ),
     "clock": (
         "A clock that is wrong by 4 minutes is wrong by about 1° of the sun. Where NTP keeps the "

@@ -33,7 +33,7 @@ PAGES: tuple[tuple[str, Help], ...] = (
             (
                 N_(
                     "A missing minus sign, or W instead of E, puts the site on the other side of the "
-                    "Earth: check the cross on the map and today's sunrise."
+                    "Earth: check the map and the sun now."
                 ),
                 N_("Swapped numbers: latitude is how far north or south, longitude how far east or west."),
                 N_("Changing the location later means that later steps must be confirmed again."),
