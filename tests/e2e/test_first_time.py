@@ -83,7 +83,7 @@ def commission(person: Newcomer, town: Town) -> None:
         person.choose(side)
     expect(page.locator("#preview .map-place")).to_have_count(1)
     person.picture("location", "The location and its sun")
-    person.key("Save, next")
+    person.key("Save and next")
     person.sees("Controller clock")
     person.note("clock")
     person.picture("clock", "The clock page")
