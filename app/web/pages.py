@@ -46,6 +46,7 @@ from app.web.features.setup import (
 from app.web.features.shows import recordings, show
 from app.web.features.site import (
     clock,
+    clock_shadow,
     horizon,
     location,
     site,
@@ -80,6 +81,7 @@ ROUTERS = (
     mast.router,
     location.router,
     clock.router,
+    clock_shadow.router,
     homing.pages,
     homing.router,
     mode.router,

@@ -56,6 +56,7 @@ PAGES = _calm(
         "live": T1,
         "location": f"{T1}/commissioning/location",
         "clock": f"{T1}/commissioning/clock",
+        "shadow": f"{T1}/commissioning/clock/shadow",
         "homing": f"{T1}/commissioning/homing",
         "mode": f"{T1}/commissioning/mode",
         "orientation": f"{T1}/commissioning/mode/orientation",

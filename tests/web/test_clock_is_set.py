@@ -106,7 +106,7 @@ async def asked_of_the_clock(browser: httpx.AsyncClient, right: datetime) -> dic
     found = {}
     for ahead_s in (0, 70, -3600):
         at = (right + timedelta(seconds=ahead_s)).isoformat()
-        page = await browser.post(f"{CLOCK_PAGE}/system", data={"at": at})
+        page = await browser.post(CLOCK_PAGE, data={"source": "keep", "at": at})
         call = await browser.put("/api/v1/site/clock", json={"source": "system", "device_at": at})
         found[ahead_s] = [page.status_code, call.status_code]
         if ahead_s:

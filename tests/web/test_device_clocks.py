@@ -35,7 +35,7 @@ async def test_a_difference_is_told_on_every_page(desk: Desk) -> None:
             assert "11 h 39 min ahead of" in shown.text, path
             assert 'data-priority="3"' in shown.text, path
         clock = (await desk.ask("GET", "/trackers/T1/commissioning/clock")).text
-        assert 'data-when="site.clock.off_s!=none" hidden>' in clock, "nobody knows which of both is wrong"
+        assert 'id="clock-error" hidden>' in clock, "nobody knows which of both is wrong"
         assert alarm[1] in unescape(clock.partition('data-list="site.clock.warnings"')[2])
         assert "Clocks differ" in (await desk.ask("GET", "/alarms")).text
         assert "Clocks differ" in (await desk.ask("GET", "/")).text

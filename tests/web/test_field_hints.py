@@ -32,7 +32,7 @@ PAGES = (
     "/tokens",
     "/users",
     T1,
-    f"{T1}/commissioning/clock",
+    f"{T1}/commissioning/clock/shadow",
     f"{T1}/commissioning/location",
     f"{T1}/commissioning/mode/orientation",
     f"{T1}/record",

@@ -20,7 +20,8 @@ from tests.web.filled import confirmed_in, filled
 T1 = "/trackers/T1"
 HTMX = {"HX-Request": "true", "HX-Request-Type": "partial"}
 PAGES = (
-    "/", T1, f"{T1}/commissioning/location", f"{T1}/commissioning/clock", f"{T1}/commissioning/homing",
+    "/", T1, f"{T1}/commissioning/location", f"{T1}/commissioning/clock",
+    f"{T1}/commissioning/clock/shadow", f"{T1}/commissioning/homing",
     f"{T1}/commissioning/mode", f"{T1}/commissioning/mode/orientation", f"{T1}/commissioning/run",
     f"{T1}/sun-check", f"{T1}/record", f"{T1}/settings", f"{T1}/drive", f"{T1}/drive-tests", f"{T1}/show",
     "/recordings", "/recordings/show-1", "/recordings/show-1?with=day-1", "/simulate", "/studies",
@@ -78,12 +79,12 @@ async def test_location_is_saved_and_leads_on(machine: FakeMachine, client: http
 async def test_clock_is_kept_copied_or_typed(machine: FakeMachine, client: httpx.AsyncClient) -> None:
     root, sure = f"{T1}/commissioning/clock", {"confirmed": "yes"}
     machine.rest()
-    await client.post(f"{root}/system")
-    device = {"at": "2026-06-21T09:00:00.000Z"}
-    question = (await client.post(f"{root}/device", data=device)).text
-    await client.post(f"{root}/device", data=device | confirmed_in(question))
+    await client.post(root, data={"source": "keep"})
+    device = {"source": "device", "at": "2026-06-21T09:00:00.000Z"}
+    question = (await client.post(root, data=device)).text
+    await client.post(root, data=device | confirmed_in(question))
     typed = {"date": "2026-06-21", "time": "12:00:30", "time_zone": "Europe/Istanbul"} | sure
-    await client.post(root, data=typed)
+    await client.post(f"{root}/shadow", data=typed)
     system, device, manual = sent(machine, SetClock)
     assert (system.source, system.at) == ("system", None)
     assert device.at.isoformat() == "2026-06-21T09:00:00+00:00"

@@ -22,7 +22,8 @@ from tests.web.filled import filled, values_of
 T1 = "/trackers/T1"
 PAGES = (
     "/", "/site", "/site/horizon", "/site/notifications", "/network", "/users", "/tokens", "/simulate",
-    "/studies", f"{T1}/commissioning/location", f"{T1}/commissioning/clock", f"{T1}/commissioning/mode",
+    "/studies", f"{T1}/commissioning/location", f"{T1}/commissioning/clock",
+    f"{T1}/commissioning/clock/shadow", f"{T1}/commissioning/mode",
     f"{T1}/drive", f"{T1}/settings", f"{T1}/strategy", f"{T1}/protections", f"{T1}/machine", f"{T1}/service",
     f"{T1}/record", T1, f"{T1}/drive-tests", f"{T1}/sun-check", f"{T1}/mount",
 )  # fmt: skip

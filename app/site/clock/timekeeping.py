@@ -188,7 +188,7 @@ class Timekeeper:
                     length=length,
                 )
             )
-            return (Reason("clock_differs", text, N_("Choose Keep the system clock in step 2.")),)
+            return (Reason("clock_differs", text, N_("Choose Use system clock in step 2.")),)
         device = self.devices.furthest()
         if device is None:
             return ()

@@ -20,7 +20,9 @@ from app.web.shell.render import page
 
 router = page_router(prefix="/trackers/{tracker_id}/commissioning")
 ORDER = tuple(StepName)
-PAGES_TO_SAVE = ("/commissioning/location", "/commissioning/mode")
+PAGES_TO_SAVE = ("/commissioning/location", "/commissioning/clock", "/commissioning/mode")
+WITHOUT_FORWARD = "/commissioning/clock/shadow"
+"""It leads back to the page that saves."""
 
 
 def tracker_of(detail: SiteDetail, tracker_id: str) -> TrackerDetail:
@@ -53,6 +55,8 @@ def _back(tracker_id: str, step: StepName, here: str) -> Link:
     root = f"/trackers/{tracker_id}"
     if here.endswith("/orientation"):
         return Link(N_("Back"), f"{root}/commissioning/mode")
+    if here.endswith(WITHOUT_FORWARD):
+        return Link(N_("Back"), f"{root}/commissioning/clock")
     at = ORDER.index(step)
     return Link(N_("Back"), f"{root}/commissioning/{ORDER[at - 1]}" if at else root)
 
@@ -64,7 +68,7 @@ def onwards(tracker: TrackerDetail, step: StepName, here: str) -> Forward | None
     """
     root = f"/trackers/{tracker.state.config.tracker_id}"
     found = step_of(tracker, step)
-    if step is StepName.RUN:
+    if step is StepName.RUN or here.endswith(WITHOUT_FORWARD):
         return None
     if here.endswith(PAGES_TO_SAVE):
         return Forward(N_("Save and next"), form="step-form")

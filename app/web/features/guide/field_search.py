@@ -27,7 +27,7 @@ SITE_FORMS = (
 TRACKER_FORMS = (
     ("tracker.html", N_("Live"), ""),
     ("location.html", N_("Location"), "/commissioning/location"),
-    ("clock.html", N_("Clock"), "/commissioning/clock"),
+    ("clock_shadow.html", N_("Clock"), "/commissioning/clock/shadow"),
     ("settings.html", N_("Settings"), "/settings"),
     ("drive.html", N_("Drive"), "/drive"),
     ("mount.html", N_("Mount"), "/mount"),

@@ -1,52 +1,47 @@
-"""Step 2: whose clock to trust, and the sun now, to be held against a shadow."""
+"""Step 2: whose clock to use: the controller's, that of the device at hand, or the system's again."""
 
-from collections.abc import Mapping
-from datetime import datetime, timedelta
-from typing import Annotated
+from dataclasses import dataclass
+from datetime import timedelta
+from typing import Annotated, Literal
 
 from fastapi import Form
-from pydantic import BaseModel
 from starlette.requests import Request
 from starlette.responses import Response
 
 from app.base.instants import read_instant
 from app.base.message import N_, NOTHING, Message
 from app.base.permission import Permission
-from app.link.messages import SetClock, SiteDetail
-from app.tracker.access.location_change import MOST_APART
+from app.link.messages import ConfirmStep, SetClock, SiteDetail
 from app.tracker.memory.memory import StepName
-from app.web.features.site.clock_doubt import clock_doubt, clock_moves, refuse_before_asking
-from app.web.features.site.location import zones
-from app.web.features.site.site_contexts import CONFIRMED, ClockPage, ClockQuestion
+from app.web.features.site.clock_doubt import answer_to, clock_doubt, is_answer, site_moves, told_instant
+from app.web.features.site.site_contexts import ClockPage, ClockQuestion
 from app.web.http.errors import NotAcceptable
 from app.web.http.late_routes import page_router
 from app.web.http.needs import needs
 from app.web.http.whole_forms import MAY_BE_ABSENT
 from app.web.shell.deps import Panel, PanelDep
-from app.web.shell.formats import local
-from app.web.shell.forms import Typed, in_zone
 from app.web.shell.orders import PressDep
 from app.web.shell.render import go, page
 from app.web.shell.wizard import tracker_of, wizard_frame
 
 router = page_router(prefix="/trackers/{tracker_id}/commissioning/clock")
-DeviceAt = Annotated[str, Form(max_length=40), MAY_BE_ABSENT]
-Confirmed = Annotated[str, Form(max_length=40), MAY_BE_ABSENT]
-NAMES = ("date", "time", "time_zone")
-LONGEST_QUESTION = timedelta(minutes=10)
-"""What was asked longer ago is asked again."""
+Source = Literal["keep", "device", "system"]
+KEEP: Source = "keep"
 
 
-class ClockForm(BaseModel):
-    """The form as it was typed; all texts."""
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """What a chosen clock would do, what speaks against it, and the differences that a question names."""
 
-    date: str = ""
-    time: str = ""
-    time_zone: str = ""
-    at: Annotated[str, MAY_BE_ABSENT] = ""
-    confirmed: Annotated[str, MAY_BE_ABSENT] = ""
-    asked_for: Annotated[str, MAY_BE_ABSENT] = ""
-    asked_at: Annotated[str, MAY_BE_ABSENT] = ""
+    command: SetClock | ConfirmStep
+    differences: tuple[timedelta, ...]
+    doubt: Message = NOTHING
+    moves: tuple[Message, ...] = ()
+
+    @property
+    def is_asked(self) -> bool:
+        """Return whether it is asked about first."""
+        return bool(self.doubt or self.moves)
 
 
 @router.get("")
@@ -54,38 +49,56 @@ class ClockForm(BaseModel):
 async def show(request: Request, tracker_id: str, built: PanelDep, done: str = "") -> Response:
     """Show the controller's clock beside this device's."""
     detail = await built.machine.detail()
-    now = built.site_now()
-    zone = detail.site.time_zone
-    typed = Typed(
-        {"date": local(now, zone, "%Y-%m-%d"), "time": local(now, zone, "%H:%M"), "time_zone": zone}
-    )
-    return _answer(request, tracker_id, detail, typed, is_saved=done == "set")
+    return _answer(request, tracker_id, detail, is_saved=done == "set")
 
 
-@router.post("/system")
+@router.post("")
 @needs(Permission.CONFIGURE)
-async def keep_system(
-    tracker_id: str, press: PressDep, built: PanelDep, at: DeviceAt = "", confirmed: Confirmed = ""
+async def save(
+    tracker_id: str,
+    press: PressDep,
+    built: PanelDep,
+    source: Annotated[Source, Form()],
+    at: Annotated[str, Form(max_length=40), MAY_BE_ABSENT] = "",
+    confirmed: Annotated[str, Form(max_length=40), MAY_BE_ABSENT] = "",
 ) -> Response:
-    """Trust the clock of the controller's computer; ask first where it differs from this device's."""
-    detail, seen, now = await built.machine.detail(), built.machine.latest(), built.site_now()
+    """Use the chosen clock and go on to homing; ask first where clocks differ or the site's would move."""
+    detail = await built.machine.detail()
+    choice = _chosen(source, tracker_id, built, detail, at)
+    if choice.is_asked and not is_answer(confirmed, choice.differences):
+        asked = ClockQuestion(answer_to(choice.differences), choice.doubt, choice.moves)
+        return _answer(press.request, tracker_id, detail, source=source, at=at, question=asked, status=422)
+    await press.send(choice.command)
+    return go(press.request, f"/trackers/{tracker_id}/commissioning/homing")
+
+
+def _chosen(source: Source, tracker_id: str, built: Panel, detail: SiteDetail, at: str) -> Choice:
+    if source == "device":
+        return _device(built, detail, at)
+    if source == KEEP and detail.site.clock.source == "manual":
+        return _present(tracker_id, built, at)
+    return _system(built, detail, at)
+
+
+def _present(tracker_id: str, built: Panel, at: str) -> Choice:
+    """Keep the clock that was set manually, as it is."""
+    now, device = built.site_now(), told_instant(at)
+    differences = (now - (device or now),)
+    return Choice(ConfirmStep(tracker_id, StepName.CLOCK), differences, clock_doubt(now, device))
+
+
+def _system(built: Panel, detail: SiteDetail, at: str) -> Choice:
+    """Use the clock of the controller's computer."""
+    seen, now = built.machine.latest(), built.site_now()
     new = now - timedelta(seconds=seen.clock.offset_s if seen else 0.0)
-    moves = _moves(built, detail, new, detail.site.time_zone)
-    system, device = built.clock.system_time(), _told(at)
-    doubt = clock_doubt(system, device)
-    asked = (new - now, system - (device or system))
-    if (doubt or moves) and not _is_answer(confirmed, asked):
-        return page(press.request, ClockQuestion(_answer_to(asked), doubt, moves), status=422)
-    await press.send(SetClock("system"))
-    return go(press.request, _saved(tracker_id))
+    moves = site_moves(built, detail, new, detail.site.time_zone)
+    system, device = built.clock.system_time(), told_instant(at)
+    differences = (new - now, system - (device or system))
+    return Choice(SetClock("system"), differences, clock_doubt(system, device), moves)
 
 
-@router.post("/device")
-@needs(Permission.CONFIGURE)
-async def copy_device(
-    tracker_id: str, press: PressDep, built: PanelDep, at: DeviceAt = "", confirmed: Confirmed = ""
-) -> Response:
-    """Make the controller's clock show what this device's shows; ask first where that moves it."""
+def _device(built: Panel, detail: SiteDetail, at: str) -> Choice:
+    """Make the controller's clock show what this device's shows."""
     try:
         instant = read_instant(at)
     except ValueError:
@@ -96,108 +109,28 @@ async def copy_device(
         raise NotAcceptable(
             N_("This device reported its time without a time zone; enter date and time manually.")
         )
-    detail = await built.machine.detail()
-    asked = (instant - built.site_now(),)
-    moves = _moves(built, detail, instant, detail.site.time_zone)
-    if moves and not _is_answer(confirmed, asked):
-        return page(press.request, ClockQuestion(_answer_to(asked), NOTHING, moves), status=422)
-    await press.send(SetClock("manual", instant))
-    return go(press.request, _saved(tracker_id))
-
-
-@router.post("")
-@needs(Permission.CONFIGURE)
-async def set_by_hand(
-    tracker_id: str, press: PressDep, built: PanelDep, typed: Annotated[ClockForm, Form()]
-) -> Response:
-    """Set the controller's clock to a typed date and time; ask first where a clock differs."""
-    detail = await built.machine.detail()
-    found = Typed(typed.model_dump(include=set(NAMES)))
-    day, time = found.day("date", N_("Date")), found.clock_time("time", N_("Time"))
-    if typed.time_zone not in zones():
-        found.errors["time_zone"] = N_("Choose a time zone from the list.")
-    if found.errors:
-        return _answer(press.request, tracker_id, detail, found, status=422)
-    instant = in_zone(day, time, typed.time_zone)
-    doubt, moves = clock_doubt(instant, _told(typed.at)), _moves(built, detail, instant, typed.time_zone)
-    now = built.site_now()
-    answered = _answered(typed, instant, now)
-    if (doubt or moves) and answered is None:
-        asked = {"asked_for": instant.isoformat(), "asked_at": now.isoformat(), "doubt": doubt}
-        return _answer(press.request, tracker_id, detail, found, status=422, moves=moves, asked=asked)
-    await press.send(SetClock("manual", answered or instant, typed.time_zone))
-    return go(press.request, _saved(tracker_id))
-
-
-def _answer_to(differences: tuple[timedelta, ...]) -> str:
-    """Return what stands for exactly these differences, in a question about them."""
-    return " ".join(f"{one.total_seconds():.0f}" for one in differences)
-
-
-def _is_answer(confirmed: str, differences: tuple[timedelta, ...]) -> bool:
-    """Return whether these differences were confirmed, none of them over a minute off what was asked."""
-    try:
-        named = [int(one) for one in confirmed.split()]
-    except ValueError:
-        return False
-    most_s = MOST_APART.total_seconds()
-    pairs = zip(named, differences, strict=False)
-    return len(named) == len(differences) and all(
-        abs(one - by.total_seconds()) <= most_s for one, by in pairs
-    )
-
-
-def _answered(typed: ClockForm, instant: datetime, now: datetime) -> datetime | None:
-    """Return what the clock is to show now that the question was answered; None if it was another question.
-
-    A typed time is that of the moment at which it was first sent: what the question took is added.
-    """
-    asked_for, asked_at = _told(typed.asked_for), _told(typed.asked_at)
-    if typed.confirmed != CONFIRMED or asked_for != instant or asked_at is None:
-        return None
-    took = now - asked_at
-    return instant + took if timedelta(0) <= took <= LONGEST_QUESTION else None
-
-
-def _told(at: str) -> datetime | None:
-    """Return what a page tells of a clock, None where its browser did not tell."""
-    try:
-        instant = read_instant(at)
-    except ValueError:
-        return None
-    return instant if instant.tzinfo else None
-
-
-def _moves(built: Panel, detail: SiteDetail, new: datetime, zone: str) -> tuple[Message, ...]:
-    """Return what a new clock would change; refuse it where a tracker is led by the present one."""
-    present = built.site_now()
-    refuse_before_asking(new - present, built.machine.latest())
-    return clock_moves(present, new, zone, detail.site.location)
-
-
-def _saved(tracker_id: str) -> str:
-    return f"/trackers/{tracker_id}/commissioning/clock?done=set"
+    differences = (instant - built.site_now(),)
+    moves = site_moves(built, detail, instant, detail.site.time_zone)
+    return Choice(SetClock("manual", instant), differences, NOTHING, moves)
 
 
 def _answer(
     request: Request,
     tracker_id: str,
     detail: SiteDetail,
-    typed: Typed,
     *,
-    status: int = 200,
-    moves: tuple[str, ...] = (),
-    asked: Mapping[str, str] | None = None,
+    source: Source = KEEP,
+    at: str = "",
+    question: ClockQuestion | None = None,
     is_saved: bool = False,
+    status: int = 200,
 ) -> Response:
-    frame = wizard_frame(request, tracker_of(detail, tracker_id), StepName.CLOCK)
     context = ClockPage(
-        frame=frame,
-        form=typed.form(NAMES),
-        zones=zones(),
+        frame=wizard_frame(request, tracker_of(detail, tracker_id), StepName.CLOCK),
         setting=detail.site.clock,
-        moves=moves,
+        source=source,
+        at=at,
+        question=question,
         is_saved=is_saved,
-        **(asked or {}),
     )
-    return page(request, context, block="manual", status=status)
+    return page(request, context, block="question", status=status)

@@ -3,12 +3,14 @@
 from collections.abc import Iterator
 from datetime import datetime, timedelta
 
-from app.base.instants import duration
+from app.base.instants import duration, read_instant
 from app.base.message import NOTHING, Message, say, with_format
+from app.link.messages import SiteDetail
 from app.sun.position import Algorithm, InstantRefused, Location, SunPosition, sun_position
 from app.tracker.access.location_change import MOST_APART, against_another_clock, doing
 from app.tracker.commands.commands import CommandRejected
 from app.tracker.state.snapshot import SiteSnapshot
+from app.web.shell.deps import Panel
 from app.web.shell.formats import local
 
 
@@ -53,13 +55,46 @@ def _moves(present: datetime, new: datetime, zone: str, location: Location | Non
         before, after = (sun_position(Algorithm.PSA, location, at) for at in (present, new))
     except InstantRefused:
         return
-    yield say("By the present clock, the sun is at {sun}.", sun=_seen(before))
-    yield say("By the new clock, the sun is at {sun}.", sun=_seen(after))
+    yield say("Sun: {before} to {after}.", before=_seen(before), after=_seen(after))
 
 
 def _seen(sun: SunPosition) -> Message:
     return say(
-        "azimuth {azimuth_deg}°, elevation {elevation_deg}°",
+        "{azimuth_deg}°, {elevation_deg}°",
         azimuth_deg=with_format(sun.azimuth_deg, ".1f"),
         elevation_deg=with_format(sun.apparent_elevation_deg, ".1f"),
+    )
+
+
+def site_moves(built: Panel, detail: SiteDetail, new: datetime, zone: str) -> tuple[Message, ...]:
+    """Return what a new clock would change; refuse it where a tracker is led by the present one."""
+    present = built.site_now()
+    refuse_before_asking(new - present, built.machine.latest())
+    return clock_moves(present, new, zone, detail.site.location)
+
+
+def told_instant(at: str) -> datetime | None:
+    """Return what a page tells of a clock, None where its browser did not tell."""
+    try:
+        instant = read_instant(at)
+    except ValueError:
+        return None
+    return instant if instant.tzinfo else None
+
+
+def answer_to(differences: tuple[timedelta, ...]) -> str:
+    """Return what stands for exactly these differences, in a question about them."""
+    return " ".join(f"{one.total_seconds():.0f}" for one in differences)
+
+
+def is_answer(confirmed: str, differences: tuple[timedelta, ...]) -> bool:
+    """Return whether these differences were confirmed, none of them over a minute off what was asked."""
+    try:
+        named = [int(one) for one in confirmed.split()]
+    except ValueError:
+        return False
+    most_s = MOST_APART.total_seconds()
+    pairs = zip(named, differences, strict=False)
+    return len(named) == len(differences) and all(
+        abs(one - by.total_seconds()) <= most_s for one, by in pairs
     )

@@ -35,32 +35,42 @@ class SitePage:
 
 
 @dataclass(frozen=True, slots=True)
-class ClockPage:
-    """Step 2."""
-
-    template: ClassVar[str] = "clock.html"
-
-    frame: Frame
-    form: Form
-    zones: tuple[str, ...]
-    setting: ClockSetting
-    doubt: str = ""
-    moves: tuple[str, ...] = ()
-    asked_for: str = ""
-    asked_at: str = ""
-    is_saved: bool = False
-    answer: str = CONFIRMED
-
-
-@dataclass(frozen=True, slots=True)
 class ClockQuestion:
-    """The question before a clock is trusted that differs from this device's, or that `moves` the site's.
+    """The question before a clock is used that differs from this device's, or that `moves` the site's.
 
     `answer` is what confirms exactly the differences that it names.
     """
 
-    template: ClassVar[str] = "_clock_question.html"
-
     answer: str
     doubt: str
     moves: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class ClockPage:
+    """Step 2. `source` is what is chosen, `at` what the device's clock showed when it was sent."""
+
+    template: ClassVar[str] = "clock.html"
+
+    frame: Frame
+    setting: ClockSetting
+    source: str
+    at: str
+    question: ClockQuestion | None
+    is_saved: bool
+
+
+@dataclass(frozen=True, slots=True)
+class ShadowPage:
+    """The shadow test of step 2, and the form for a typed clock."""
+
+    template: ClassVar[str] = "clock_shadow.html"
+
+    frame: Frame
+    form: Form
+    zones: tuple[str, ...]
+    doubt: str = ""
+    moves: tuple[str, ...] = ()
+    asked_for: str = ""
+    asked_at: str = ""
+    answer: str = CONFIRMED
