@@ -60,8 +60,6 @@ def test_the_five_steps_are_pictured(walker: Walker, service: str, picture: Pict
         page.wait_for_selector("#clock-apart")
     expect(page.locator("#clock-apart")).to_contain_text("0 s")
     picture(page, "step-clock")
-    page.locator('form[action$="/clock/system"] button').click()
-    page.wait_for_selector("#forward a.key")
     onwards(page, "/homing")
     page.wait_for_selector(LINK_MEASURED)
     key = page.locator('[data-jog="azimuth"][data-direction="-1"]')

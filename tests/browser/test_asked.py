@@ -40,14 +40,14 @@ def test_a_clock_11_hours_off_is_amber_and_asked_about(opened: Opened, plant: Pl
     expect(page.locator("#clock-apart[data-off]")).to_have_count(0)
     page.evaluate(LATE)
     apart = page.locator("#clock-apart[data-off]")
-    expect(apart).to_contain_text("+11 h 39 min")
-    assert apart.evaluate("e => getComputedStyle(e).backgroundColor") == "rgb(255, 176, 0)"
-    page.locator('form[action$="/clock/system"] > button').click()
-    expect(page.locator(".ask-clock")).to_contain_text("11 h 39 min ahead of this device's clock")
-    assert page.locator('.ask-clock [name="confirmed"]').evaluate(COVERED) == []
+    expect(apart).to_contain_text("11 h 39 min")
+    assert apart.evaluate("e => getComputedStyle(e).borderTopColor") == "rgb(255, 176, 0)"
+    page.locator("#forward .key").click()
+    expect(page.locator(".question")).to_contain_text("11 h 39 min ahead of this device's clock")
+    assert page.locator('.question [name="confirmed"]').evaluate(COVERED) == []
     assert asked(plant, SetClock) == 0
-    page.locator('.ask-clock [name="confirmed"]').click()
-    expect(page.locator(".ask-clock")).to_have_count(0)
+    page.locator('.question [name="confirmed"]').click()
+    expect(page).to_have_url(re.compile("/homing$"))
     assert asked(plant, SetClock) == 1
 
 
@@ -56,7 +56,8 @@ def test_a_clock_that_cannot_be_copied_says_so_where_it_is_seen(opened: Opened) 
     page.set_viewport_size({"width": 1024, "height": 700})  # its button is in view, what stands below is not
     page.evaluate(LATE)
     expect(page.locator("#clock-apart[data-off]")).to_have_count(1)
-    page.locator('form[action$="/clock/device"] > button').click()
+    page.locator('input[value="device"]').check()
+    page.locator("#forward .key").click()
     refused = page.locator(".outcome-refused")
     expect(refused).to_contain_text("T2 is tracking the sun by the present clock.")
     expect(refused).to_be_in_viewport(ratio=1)

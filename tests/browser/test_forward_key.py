@@ -34,14 +34,14 @@ def test_an_answer_that_comes_late_brings_nobody_back(plant: Plant, opened: Open
     page = opened("/trackers/T1/commissioning/clock")
     order: list[Route] = []
     going: list[Route] = []
-    page.route("**/clock/system", lambda route: order.append(route))
-    page.route("**/commissioning/homing", lambda route: going.append(route))
+    page.route("**/commissioning/clock", lambda route: order.append(route))
+    page.route("**/commissioning/mode", lambda route: going.append(route))
     page.evaluate(ANSWERED)
-    with page.expect_request("**/clock/system"):
-        page.locator('form[action$="/clock/system"] button').click()
-    with page.expect_request("**/commissioning/homing"):
-        page.locator("#forward a.key").click(no_wait_after=True)
+    with page.expect_request("**/commissioning/clock"):
+        page.locator("#forward .key").click()
+    with page.expect_request("**/commissioning/mode"):
+        page.locator('.step-link[href$="/commissioning/mode"]').click(no_wait_after=True)
     with page.expect_console_message(lambda said: said.text == "answered"):
         order[0].continue_()
     going[0].continue_()
-    arrive(page, "/commissioning/homing")
+    arrive(page, "/commissioning/mode")

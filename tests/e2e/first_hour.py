@@ -28,7 +28,7 @@ NOTES = {
     ),
     "clock": (
         "A clock that is wrong by 4 minutes is wrong by about 1° of the sun. Where NTP keeps the "
-        "computer's clock, keep it. The page says where the sun is now: go outside and look."
+        "computer's clock, keep it. The page shows the sky that each clock means: go outside and look."
     ),
     "homing": (
         "The drive counts from the position at which it was switched on; it has no reference to north. On a "
