@@ -13,7 +13,14 @@ from app.base.message import N_, NOTHING, Message
 from app.base.permission import Permission
 from app.link.messages import ConfirmStep, SetClock, SiteDetail
 from app.tracker.memory.memory import StepName
-from app.web.features.site.clock_doubt import answer_to, clock_doubt, is_answer, site_moves, told_instant
+from app.web.features.site.clock_doubt import (
+    answer_to,
+    clock_doubt,
+    doubt_beside,
+    is_answer,
+    site_moves,
+    told_instant,
+)
 from app.web.features.site.site_contexts import ClockPage, ClockQuestion
 from app.web.http.errors import NotAcceptable
 from app.web.http.late_routes import page_router
@@ -94,7 +101,7 @@ def _system(built: Panel, detail: SiteDetail, at: str) -> Choice:
     moves = site_moves(built, detail, new, detail.site.time_zone)
     system, device = built.clock.system_time(), told_instant(at)
     differences = (new - now, system - (device or system))
-    return Choice(SetClock("system"), differences, clock_doubt(system, device), moves)
+    return Choice(SetClock("system"), differences, doubt_beside(moves, system, device, now), moves)
 
 
 def _device(built: Panel, detail: SiteDetail, at: str) -> Choice:

@@ -29,6 +29,17 @@ def clock_doubt(clock: datetime, device: datetime | None) -> Message:
     )
 
 
+def doubt_beside(
+    moves: tuple[Message, ...], clock: datetime, device: datetime | None, present: datetime
+) -> Message:
+    """Return the question before a clock is trusted where the moves that are asked about do not say the same.
+
+    They do where the device agrees with the present clock.
+    """
+    says_the_same = moves and device is not None and abs(present - device) <= MOST_APART
+    return NOTHING if says_the_same else clock_doubt(clock, device)
+
+
 def refuse_before_asking(by: timedelta, now: SiteSnapshot | None) -> None:
     """Raise `CommandRejected` where the clock cannot be moved by so much: it is in vain to ask about it."""
     if reasons := against_another_clock(by, doing(now.trackers if now else ())):

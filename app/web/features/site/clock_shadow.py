@@ -13,7 +13,7 @@ from app.base.message import N_
 from app.base.permission import Permission
 from app.link.messages import SetClock, SiteDetail
 from app.tracker.memory.memory import StepName
-from app.web.features.site.clock_doubt import clock_doubt, site_moves, told_instant
+from app.web.features.site.clock_doubt import doubt_beside, site_moves, told_instant
 from app.web.features.site.location import zones
 from app.web.features.site.site_contexts import CONFIRMED, ShadowPage
 from app.web.http.late_routes import page_router
@@ -71,9 +71,9 @@ async def set_by_hand(
     if found.errors:
         return _answer(press.request, tracker_id, detail, found, status=422)
     instant = in_zone(day, time, typed.time_zone)
-    doubt = clock_doubt(instant, told_instant(typed.at))
     moves = site_moves(built, detail, instant, typed.time_zone)
     now = built.site_now()
+    doubt = doubt_beside(moves, instant, told_instant(typed.at), now)
     answered = _answered(typed, instant, now)
     if (doubt or moves) and answered is None:
         asked = {"asked_for": instant.isoformat(), "asked_at": now.isoformat(), "doubt": doubt}
