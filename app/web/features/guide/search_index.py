@@ -73,6 +73,7 @@ PARTS = (
     (N_("Label"), "/label", N_("Print a label with a QR code")),
     (N_("Location"), "/commissioning/location", N_("Step 1: latitude, longitude, time zone")),
     (N_("Clock"), "/commissioning/clock", N_("Step 2: date, time, NTP")),
+    (N_("Shadow test"), "/commissioning/clock/shadow", N_("Shadow of a pole, enter date and time")),
     (N_("Homing"), "/commissioning/homing", N_("Step 3: jog, set home")),
     (N_("Mode"), "/commissioning/mode", N_("Step 4: fixed, azimuth, elevation, dual axis")),
     (N_("Start"), "/commissioning/run", N_("Step 5: start tracking, show movement")),
