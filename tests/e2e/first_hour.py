@@ -33,11 +33,11 @@ NOTES = {
     "homing": (
         "The drive counts from the position at which it was switched on; it has no reference to north. On a "
         "real tracker, jog with the hold-to-run buttons until the panel faces true north and is vertical, "
-        "then set the home position. The simulated tracker may have any position, so the page asks for "
-        "confirmation. Until this step is done, only jogging and homing move the tracker."
+        "then set the home position. The simulated tracker has home switches: *Start homing* searches them. "
+        "Until this step is done, only jogging and homing move the tracker."
     ),
     "mode": (
-        "*Dual-axis tracking* follows the sun with both axes. The other modes hold one axis or both; "
+        "*Dual-axis tracking* follows the sun with both axes, and is chosen already. The other modes hold one axis or both; "
         "[strategies](../explain/strategies.md) describes when each of them moves."
     ),
     "track": (
