@@ -98,7 +98,7 @@ function tellDeviceZone() {
 
 for (const kind of ["input", "change"]) {
   document.addEventListener(kind, (event) => {
-    if (!event.target.closest("#place")) return;
+    if (!event.target.closest("#step-form")) return;
     changed(event.inputType?.startsWith("insertFromPaste") ? null : event.target);
   });
 }

@@ -212,6 +212,18 @@ def test_a_hint_is_seen_while_its_field_is_used_and_moves_nothing(opened: Opened
         assert page.evaluate(TOPS) == before
 
 
+def test_what_is_restored_after_a_reload_is_on_the_map(opened: Opened, plant: Plant) -> None:
+    page = opened(PAGE, "tablet")
+    enter(page, {"longitude": "12.5"})
+    expect(page.locator("#preview")).to_contain_text("12.50° E")
+    page.reload()
+    note = page.locator(".kept-note")
+    expect(note).to_be_in_viewport(ratio=1)
+    expect(page.locator("#preview")).to_contain_text("12.50° E")
+    assert page.evaluate(SCROLLS) == [0, 0]
+    assert faults(page) == []
+
+
 def test_gps_fills_the_fields_or_says_why_it_does_not(opened: Opened, plant: Plant) -> None:
     page = opened(PAGE, "tablet")
     page.evaluate("""() => { navigator.geolocation.getCurrentPosition = (found) => found({ coords: {

@@ -20,6 +20,9 @@ CROP_DEG, LARGER_DEG = 200.0, 60.0
 ROOM = 1.4
 """How much wider than the distance of two places a map is that has both."""
 STEP_DEG = 3
+EDGE_DEG = 9
+"""So far the map goes on beyond the date line and the poles: a mark there is seen whole."""
+EDGE = PER_DEG * EDGE_DEG
 LABEL_PERCENT = 13.0
 """How far from the edge of the map the middle of a label is at the least."""
 LABELS_APART = (24.0, 14.0)
@@ -59,32 +62,32 @@ def on_path(place: Location) -> tuple[float, float]:
 def crop_around(places: Sequence[Location], width_deg: float) -> Crop:
     """Return a part of the map with all of these places, the whole world for none.
 
-    It ends at the date line: a place near it is not in the middle.
+    It ends at the date line and the poles: a place near them is not in the middle.
     """
     if not places:
         return _centered(WORLD_WIDTH / 2, WORLD_HEIGHT / 2, WORLD_WIDTH)
     across, down = zip(*map(on_path, places), strict=True)
     wide = max(across) - min(across)
     high = max(down) - min(down)
-    width = min(WORLD_WIDTH, max(PER_DEG * width_deg, ROOM * wide, ROOM * high / RATIO))
+    width = min(WORLD_WIDTH + 2 * EDGE, max(PER_DEG * width_deg, ROOM * wide, ROOM * high / RATIO))
     return _centered((max(across) + min(across)) / 2, (max(down) + min(down)) / 2, width)
 
 
 def _centered(x: float, y: float, width: float) -> Crop:
     height = width * RATIO
-    left = min(max(x - width / 2, 0.0), WORLD_WIDTH - width)
-    if height > WORLD_HEIGHT:
+    left = min(max(x - width / 2, -EDGE), WORLD_WIDTH + EDGE - width)
+    if height > WORLD_HEIGHT + 2 * EDGE:
         return Crop(left, (WORLD_HEIGHT - height) / 2, width)
-    return Crop(left, min(max(y - height / 2, 0.0), WORLD_HEIGHT - height), width)
+    return Crop(left, min(max(y - height / 2, -EDGE), WORLD_HEIGHT + EDGE - height), width)
 
 
 def night_path(subsolar: Location) -> str:
     """Return the half of the Earth where it is night as path data; it goes on above and below the poles."""
-    longitudes = range(-180, 181, STEP_DEG)
-    line = (on_path(Location(terminator_deg(subsolar, deg), deg)) for deg in longitudes)
+    longitudes = range(-180 - EDGE_DEG, 181 + EDGE_DEG, STEP_DEG)
+    line = ((PER_DEG * (deg + 180.0), PER_DEG * (90.0 - terminator_deg(subsolar, deg))) for deg in longitudes)
     dark = WORLD_HEIGHT * 2 if subsolar.latitude_deg >= 0 else -WORLD_HEIGHT
     edge = "L".join(f"{x:.0f} {y:.0f}" for x, y in line)
-    return f"M{edge}L{WORLD_WIDTH:.0f} {dark:.0f}L0 {dark:.0f}Z"
+    return f"M{edge}L{WORLD_WIDTH + EDGE:.0f} {dark:.0f}L{-EDGE:.0f} {dark:.0f}Z"
 
 
 def site_map(
