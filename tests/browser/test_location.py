@@ -1,5 +1,6 @@
 """The location is one view: nothing scrolls, every button is in reach, and a question ends with a change."""
 
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -15,6 +16,8 @@ PAGE = "/trackers/T1/commissioning/location"
 QUESTION = "#place-doubts > .question"
 NOISE = ("422", "409")
 MOST_WORDS = 60
+NIGHT_S = 15 * 3600.0
+"""So far is the site's clock set on: it is night in Europe, and in the middle of the Atlantic."""
 WORDS = r"""() => {
   const words = (text) => text.match(/\p{L}{2,}/gu) ?? [];
   const zone = document.getElementById("f-time_zone").selectedOptions[0];
@@ -94,6 +97,27 @@ def test_a_tablet_shows_all_at_a_glance(opened: Opened, plant: Plant, state: str
     assert faults(page) == []
     if language == "en":
         assert len(page.evaluate(WORDS)) <= MOST_WORDS
+
+
+@pytest.mark.parametrize("state", ["stored", "east and west", "swapped"])
+def test_at_night_it_fits_too_and_the_zones_tell_two_locations_apart(stage: Stage, state: str) -> None:
+    machine = stage.plant.machine
+    stage.do(machine.rest)
+    clock = replace(machine.site.clock, offset_s=machine.site.clock.offset_s + NIGHT_S)
+    stage.do(lambda: setattr(machine, "site", replace(machine.site, clock=clock)))
+    stage.advance(1000)
+    page = stage.open(PAGE, "tablet", allow=NOISE)
+    if STATES[state]:
+        ask(page, STATES[state])
+    assert page.evaluate(SCROLLS) == [0, 0]
+    assert page.evaluate(ABOVE_FOLD) == []
+    assert faults(page) == []
+    assert len(page.evaluate(WORDS)) <= MOST_WORDS
+    rows = page.locator("#preview .suns tbody tr").all_inner_texts()
+    assert all("horizon" in row for row in rows)
+    if state != "stored":
+        assert len(rows) == 2
+        assert "Europe/Istanbul" in rows[1]
 
 
 @pytest.mark.parametrize("language", ["en", "de"])
