@@ -17,7 +17,8 @@ LINK_ERRORS = ("WebSocket", "Failed to load resource", "WebGL")
 SEEN = """([across, down]) => {
   const seen = (x, y) => {
     const there = document.elementFromPoint(x, y);
-    const inFrame = !there?.closest(".slot-1, .slot-2") && there?.closest(".rail, .footer, .messages:has(> [open]), .stop-answer");
+    const isAction = there?.closest(".slot-1, .slot-2");
+    const inFrame = !isAction && there?.closest(".rail, .footer, .messages:has(> [open]), .stop-answer");
     return !inFrame && y >= document.querySelector(".header").getBoundingClientRect().bottom;
   };
   const steps = (length, most) => [...Array(length)].map((_, step) => (step + 0.5) * most / length);
@@ -25,7 +26,7 @@ SEEN = """([across, down]) => {
   const rows = steps(down, innerHeight).map(free);
   return [rows.reduce((sum, row) => sum + row, 0) / down, rows.filter((row) => row > 0.99).length / down];
 }"""
-"""The share of the screen, and of its height, at which the page is seen, its own actions too, and nothing of the frame."""
+"""The share of the screen, and of its height, at which the page and its actions are seen, not the frame."""
 STOP_AND_ACTION = """() => {
   const [stop, action, header] = ["#stop-key", "#forward .key", ".header"]
     .map((one) => document.querySelector(one).getBoundingClientRect());

@@ -1,4 +1,4 @@
-"""Step 5: how long the panel takes to its target, and what is in the place of *Start tracking* once it tracks."""
+"""Step 5: how long the panel takes to its target, and what takes the place of *Start tracking*."""
 
 from playwright.sync_api import expect
 
@@ -23,7 +23,13 @@ def test_the_duration_is_that_of_the_slower_axis(stage: Stage) -> None:
         ways = (abs(azimuth_deg - 180.0), config.azimuth), (abs(elevation_deg - 45.0), config.elevation)
         lasts_s = max(seconds(way, axis.speed_dps, axis.acceleration_dps2) for way, axis in ways)
         minutes, rest = divmod(round(lasts_s + 0.4999), 60)
-        told = f"{minutes} min {rest:02d} s" if minutes and rest else f"{minutes} min" if minutes else f"{rest} s"
+        told = (
+            f"{minutes} min {rest:02d} s"
+            if minutes and rest
+            else f"{minutes} min"
+            if minutes
+            else f"{rest} s"
+        )
         stage.until(lambda told=told: page.locator("#run-lasts").inner_text() == told)
         assert page.locator('[data-to="azimuth"]').inner_text() == f"{azimuth_deg:.2f}°"
         assert page.locator('[data-to="elevation"]').inner_text() == f"{elevation_deg:.2f}°"

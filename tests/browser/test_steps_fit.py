@@ -9,7 +9,6 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from app.link.messages import Order
-
 from app.tracker.commands.commands import SelectMode
 from app.tracker.values.mode import Mode
 from tests.browser.conftest import Opened, Plant, resize
@@ -31,9 +30,7 @@ def wrong(page: Page) -> list[str]:
 
 
 @pytest.mark.parametrize("language", ["en", "de"])
-def test_no_step_scrolls_and_every_action_has_its_place(
-    plant: Plant, opened: Opened, language: str
-) -> None:
+def test_no_step_scrolls_and_every_action_has_its_place(plant: Plant, opened: Opened, language: str) -> None:
     page = opened("/account", "tablet")
     page.context.add_cookies([{"name": "language", "value": language, "url": plant.url}])
     for step in ("homing", "mode", "run"):

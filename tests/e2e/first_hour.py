@@ -37,8 +37,8 @@ NOTES = {
         "Until this step is done, only jogging and homing move the tracker."
     ),
     "mode": (
-        "*Dual-axis tracking* follows the sun with both axes, and is chosen already. The other modes hold one axis or both; "
-        "[strategies](../explain/strategies.md) describes when each of them moves."
+        "*Dual-axis tracking* follows the sun with both axes, and is chosen already. The other modes hold "
+        "one axis or both; [strategies](../explain/strategies.md) describes when each of them moves."
     ),
     "track": (
         "*Start tracking* moves the panel to the sun and keeps it there. At night, tracking waits for "

@@ -70,8 +70,10 @@ def spoken(name: str, code: str, panels: Panels) -> list[str]:
     """Return what does not fit in another language."""
     with panels.shown(EVERY_PAGE[name], code) as page:
         tag = page.evaluate("document.documentElement.lang")
-        return fits(page) + with_all_open(page, "phone", "desk") + (
-            [] if tag == LANGUAGES[code].tag else [f"the language is {tag}"]
+        return (
+            fits(page)
+            + with_all_open(page, "phone", "desk")
+            + ([] if tag == LANGUAGES[code].tag else [f"the language is {tag}"])
         )
 
 

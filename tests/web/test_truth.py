@@ -39,7 +39,9 @@ FORM = re.compile(r"<form class=\"action\".*?</form>", re.DOTALL)
 OFF = re.compile(r"<(button|fieldset)\b[^>]*\bdisabled")
 WHY = re.compile(r'<ul class="reasons"[^>]*>\s*<li>|<p class="denied-why">')
 
-VALID = re.compile(r'data-when="measured"( hidden)?>\s*<(?:div|span)\s[^>]*?data-when="homed(?:=true)?"( hidden)?>')
+VALID = re.compile(
+    r'data-when="measured"( hidden)?>\s*<(?:div|span)\s[^>]*?data-when="homed(?:=true)?"( hidden)?>'
+)
 
 
 @pytest.fixture

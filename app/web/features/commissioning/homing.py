@@ -81,9 +81,7 @@ async def home(tracker_id: str, press: PressDep) -> Response:
 
 @router.post("/step")
 @needs(Permission.OPERATE)
-async def step(
-    tracker_id: str, press: PressDep, increment: Annotated[str, Form()] = ""
-) -> Response:
+async def step(tracker_id: str, press: PressDep, increment: Annotated[str, Form()] = "") -> Response:
     """Move one axis by a small step."""
     if increment not in STEPS:
         raise NotAcceptable(N_("Choose an increment of 0.1 or 1 degree of one axis."))

@@ -75,7 +75,9 @@ async def show(request: Request, tracker_id: str, machine: MachineDep) -> Respon
     chosen = memory.mode or listed[0].mode
     return page(
         request,
-        ModePage(frame=frame, choices=listed, chosen=chosen, saved=memory.mode, orientation=memory.orientation),
+        ModePage(
+            frame=frame, choices=listed, chosen=chosen, saved=memory.mode, orientation=memory.orientation
+        ),
     )
 
 

@@ -137,5 +137,7 @@ def label_of(place: Location, mistake: Mistake | None = None) -> str:
 def side_of(place: Location, mistake: Mistake) -> str:
     """Return the letter of the side by which a place differs, in the language of the page."""
     if mistake is Mistake.EAST_WEST:
-        return pgettext("compass", "W" if place.longitude_deg < 0 else "E")
-    return pgettext("compass", "S" if place.latitude_deg < 0 else "N")
+        letter = "W" if place.longitude_deg < 0 else "E"
+    else:
+        letter = "S" if place.latitude_deg < 0 else "N"
+    return pgettext("compass", letter)
