@@ -6,7 +6,7 @@ const told = document.getElementById("texts");
 
 export const spoken = { point: facts.point, date: facts.date, compass: facts.compass, texts: told ? JSON.parse(told.textContent).texts : {} };
 
-// Returns a text with its gaps filled: `_(", {lost} of {all} heartbeats lost", { lost, all })`.
+// Returns a text with its gaps filled: `_("{time} ms", { time })`.
 export function _(text, values = {}) {
   return (spoken.texts[text] ?? text).replace(/\{(\w+)\}/g, (gap, name) => values[name] ?? gap);
 }

@@ -102,8 +102,8 @@ for (const kind of ["input", "change"]) {
     changed(event.inputType?.startsWith("insertFromPaste") ? null : event.target);
   });
 }
-// Without its question the map has the entered location alone.
-document.addEventListener("click", ({ target }) => { if (target.closest?.("#place-doubts [data-cancel]")) setTimeout(renew); });
+// Without its question, which goes with this press, the map has the entered location alone.
+document.addEventListener("click", ({ target }) => { if (target.closest?.("#place-doubts [data-cancel]")) setTimeout(renew); }, true);
 document.addEventListener("htmx:before:request", () => { asked = changes; });
 document.addEventListener("htmx:after:swap", () => { follow(); tellDeviceZone(); });
 tellDeviceZone();

@@ -33,7 +33,7 @@ def wrong(page: Page) -> list[str]:
 def test_no_step_scrolls_and_every_action_has_its_place(plant: Plant, opened: Opened, language: str) -> None:
     page = opened("/account", "tablet")
     page.context.add_cookies([{"name": "language", "value": language, "url": plant.url}])
-    for step in ("homing", "mode", "run"):
+    for step in ("location", "clock", "homing", "mode", "run"):
         resize(page, "tablet")
         page.goto(f"{plant.url}{STEPS}/{step}")
         page.wait_for_selector("html[data-link=live]")
