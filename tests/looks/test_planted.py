@@ -121,5 +121,5 @@ def test_a_step_that_scrolls_or_says_much_is_found(browser: Browser) -> None:
     below, _ = step_faults(page)
     page.close()
     assert scrolls == "the step scrolls by 1332 px"
-    assert many.startswith("61 words: word")
+    assert many.startswith("61 words: Last word")
     assert below == "below the fold by 1336 px: Last"
