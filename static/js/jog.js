@@ -40,6 +40,7 @@ function begin(key, pointer) {
   keepStill(key);
   key.dataset.held = "";
   said.textContent = "";
+  document.querySelector("#zero-outcome .question")?.remove(); // it named where the axes were
   navigator.vibrate?.(15);
   beat();
   press.timer = setInterval(beat, BEAT_MS);
@@ -153,6 +154,7 @@ function explain(key) {
 document.querySelectorAll("[data-jog]:not([data-denied])").forEach(watch);
 document.querySelectorAll("[data-jog][data-denied]").forEach(explain);
 document.addEventListener("pointerdown", (event) => { if (press && event.pointerId !== press.pointer) end(_("A second finger touched the screen.")); }, true);
+addEventListener("pointerdown", ({ target }) => { if (!target.closest?.("[data-jog], #jog-words a")) said.textContent = ""; });
 document.addEventListener("visibilitychange", () => { if (document.hidden) end(); });
 addEventListener("blur", () => end());
 addEventListener("pagehide", () => end());

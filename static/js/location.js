@@ -86,7 +86,10 @@ function offerDevicePlace() {
   key.disabled = false;
   key.addEventListener("click", () => {
     tell(words, _("Finding the location …"));
-    navigator.geolocation.getCurrentPosition((found) => take(found, words), (error) => tell(words, REFUSED[error.code] ?? error.message),
+    const before = changes;
+    // What was typed meanwhile counts.
+    const taken = (found) => (changes === before ? take(found, words) : words.replaceChildren());
+    navigator.geolocation.getCurrentPosition(taken, (error) => tell(words, REFUSED[error.code] ?? error.message),
       { enableHighAccuracy: true, timeout: 20000, maximumAge: 0 });
   });
 }
@@ -104,7 +107,10 @@ for (const kind of ["input", "change"]) {
 }
 // Without its question, which goes with this press, the map has the entered location alone.
 document.addEventListener("click", ({ target }) => { if (target.closest?.("#place-doubts [data-cancel]")) setTimeout(renew); }, true);
-document.addEventListener("htmx:before:request", () => { asked = changes; });
-document.addEventListener("htmx:after:swap", () => { follow(); tellDeviceZone(); });
+document.addEventListener("htmx:before:request", ({ detail }) => { if (detail?.ctx?.sourceElement?.id === "preview") asked = changes; });
+document.addEventListener("htmx:after:swap", ({ detail }) => {
+  if (detail?.ctx?.sourceElement?.id === "preview") follow();
+  tellDeviceZone();
+});
 tellDeviceZone();
 offerDevicePlace();

@@ -122,8 +122,12 @@ function paint({ site, tracker }) {
 
 // What a button answered is no longer the last thing that happened once something else has.
 let happened = null;
+let did = null;
 function endAnswers(tracker) {
   const now = JSON.stringify([tracker.state, tracker.messages.filter(({ since }) => since).map(({ code, since }) => [code, since])]);
+  // What was refused because of what the tracker did is no longer so.
+  if (did !== null && did !== tracker.state) document.querySelector(".question-place .outcome-refused")?.remove();
+  did = tracker.state;
   if (happened !== null && happened !== now) {
     for (const done of document.querySelectorAll("form[data-moves] .outcome-ok")) done.remove();
   }

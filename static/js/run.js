@@ -16,6 +16,8 @@ function paint() {
   const { aim: aimed, speeds, accelerations } = document.getElementById("run-aim").dataset;
   const aim = numbers(aimed);
   for (const to of document.querySelectorAll("[data-to]")) to.textContent = aim ? shown(aim[AXES.indexOf(to.dataset.to)], "angle2") : "–";
+  const night = document.getElementById("run-night");
+  night.hidden = Boolean(aim) || !live.tracker?.mode || live.tracker?.sun_is_up !== false;
   const stands = AXES.map((axis) => live.tracker?.[axis]?.position_deg);
   const isKnown = aim && Number.isFinite(stands[0]);
   const each = isKnown ? AXES.map((_, at) => (Number.isFinite(stands[at])

@@ -3,6 +3,8 @@
 import { onlyAsRead } from "./as_read.js";
 import { live } from "./live.js";
 
+const UNSEEN_MS = 700;
+
 function told(form) {
   for (const other of document.querySelectorAll("[data-told]")) if (other !== form) delete other.dataset.told;
   if (form) form.dataset.told = "";
@@ -30,8 +32,20 @@ function actionsOf(slot) {
   return forms.map((form) => `${form.getAttribute("action")} ${form.elements.position?.value ?? ""}`).join();
 }
 
+// Who goes on by a double tap has not seen the page that the second one meets: it saves nothing there.
+function waitToSave() {
+  const save = document.querySelector(".slots-steps #forward button[form]:not(:disabled)");
+  if (!save) return;
+  Object.assign(save, { disabled: true }).dataset.unseen = "";
+  setTimeout(() => {
+    save.disabled = false;
+    delete save.dataset.unseen;
+  }, UNSEEN_MS);
+}
+
 // A press on a button that is off reaches its form.
 export function start() {
+  waitToSave();
   if (!document.querySelector(".slot, .jog")) return;
   for (const slot of document.querySelectorAll(".slot:has(form.action + form.action)")) onlyAsRead(slot, () => actionsOf(slot));
   for (const kind of ["state", "link"]) live.on(kind, reach);

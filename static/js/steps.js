@@ -29,6 +29,7 @@ export function start() {
   if (!document.getElementById("steps")) return;
   live.on("state", look);
   document.addEventListener("htmx:after:request", (event) => {
-    if (event.detail?.ctx?.request?.method?.toUpperCase() === "POST") ask();
+    const { request, response } = event.detail?.ctx ?? {};
+    if (request?.method?.toUpperCase() === "POST" && response?.status < 400) ask(); // what was refused is read where it stands
   });
 }

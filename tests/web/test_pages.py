@@ -92,7 +92,7 @@ async def test_clock_is_kept_copied_or_typed(machine: FakeMachine, client: httpx
 
 
 async def test_zero_and_steps_go_to_the_machine(machine: FakeMachine, client: httpx.AsyncClient) -> None:
-    await client.post(f"{T1}/zero", data={"key": "press-1", "confirmed": "yes"})
+    await client.post(f"{T1}/zero", data={"key": "press-1", "confirmed": "180.0 45.0"})
     await client.post(f"{T1}/step", data={"increment": "elevation -0.1"})
     assert sent(machine, SetHome)
     assert sent(machine, Step)[0].delta_deg == pytest.approx(-0.1)
@@ -122,7 +122,7 @@ async def test_refusal_names_every_reason_below_the_key(
         Reason("a", "The axes move.", "Wait."),
         Reason("b", "The drive is silent."),
     )
-    answer = await client.post(f"{T1}/zero", data={"confirmed": "yes"}, headers=HTMX)
+    answer = await client.post(f"{T1}/zero", data={"confirmed": "180.0 45.0"}, headers=HTMX)
     assert answer.status_code == 409
     assert "Not done." in answer.text
     assert "The axes move." in answer.text

@@ -29,11 +29,15 @@ async def test_a_page_asks_before_it_is_believed(machine: FakeMachine, client: h
     assert asked.status_code == 422
     assert AZIMUTH in asked.text
     assert ELEVATION in asked.text
-    assert 'name="confirmed" value="yes"' in asked.text
+    assert 'name="confirmed" value="102.4 36.6"' in asked.text
     whole = await client.post(f"{T1}/zero")
     assert (whole.status_code, AZIMUTH in whole.text) == (422, True)
     assert not sent(machine, SetHome)
-    done = await client.post(f"{T1}/zero", data={"confirmed": "yes"}, headers=HTMX)
+    for other in ("yes", "102.4", "102.8 36.6", "102.4 nan"):
+        again = await client.post(f"{T1}/zero", data={"confirmed": other}, headers=HTMX)
+        assert again.status_code == 422, "it was asked about other readings"
+    assert not sent(machine, SetHome)
+    done = await client.post(f"{T1}/zero", data={"confirmed": "102.5 36.5"}, headers=HTMX)
     assert done.status_code == 200
     assert len(sent(machine, SetHome)) == 1
 

@@ -5,6 +5,7 @@ from typing import Any, ClassVar, Protocol
 
 from app.alarms.urgency import IN_DANGER
 from app.base.message import Message
+from app.base.permission import Permission
 from app.sun.algorithms import PUBLISHED
 from app.tracker.commands.control import ControlState
 from app.tracker.memory.memory import Pointing, Sighting, StepName, TrackerMemory
@@ -45,11 +46,12 @@ class Link:
 
 @dataclass(frozen=True, slots=True)
 class Forward:
-    """The key at the lower right: a link, the submit key of a form, or why neither works yet."""
+    """The way forward: a link, the submit key of a form that `needs` a permission, or why neither works."""
 
     label: str
     href: str | None = None
     form: str | None = None
+    needs: Permission = Permission.READ
     reasons: tuple[Reason, ...] = ()
 
 
@@ -191,7 +193,7 @@ class ProgressPart:
 
 @dataclass(frozen=True, slots=True)
 class HomingPage:
-    """Step 3; `doubts` are the questions before a home position that is likely to be mistaken."""
+    """Step 3; `doubts` are asked before a home position that may be mistaken, about the readings `asked`."""
 
     template: ClassVar[str] = "homing.html"
 
@@ -199,6 +201,7 @@ class HomingPage:
     capabilities: DriveCapabilities | None
     config: TrackerConfig
     doubts: tuple[str, ...] = ()
+    asked: str = ""
 
 
 @dataclass(frozen=True, slots=True)

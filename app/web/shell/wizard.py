@@ -71,7 +71,8 @@ def onwards(tracker: TrackerDetail, step: StepName, here: str) -> Forward | None
     if step is StepName.RUN or here.endswith(WITHOUT_FORWARD):
         return None
     if here.endswith(PAGES_TO_SAVE):
-        return Forward(N_("Save and next"), form="step-form")
+        needs_role = Permission.OPERATE if step is StepName.MODE else Permission.CONFIGURE
+        return Forward(N_("Save and next"), form="step-form", needs=needs_role)
     if found.status is StepStatus.DONE:
         return Forward(N_("Next"), f"{root}/commissioning/{ORDER[ORDER.index(step) + 1]}")
     return Forward(N_("Next"), reasons=found.reasons)

@@ -8,6 +8,8 @@ from app.tracker.state.snapshot import Snapshot
 
 JUMP_DEG = 2.0
 """By eye an axis is turned to its home position within a degree; a reading farther off is asked about."""
+NOISE_DEG = 0.25
+"""So far the reading of an axis at standstill may differ between a question and its answer."""
 
 
 def zero_doubts(mount: MountConfig, tracker: Snapshot, axes: tuple[Axis, ...]) -> tuple[str, ...]:
@@ -19,6 +21,25 @@ def zero_doubts(mount: MountConfig, tracker: Snapshot, axes: tuple[Axis, ...]) -
         for axis, state in read.items()
         if state is not None and state.position_deg is not None and abs(state.position_deg) > JUMP_DEG
     )
+
+
+def readings(mount: MountConfig, tracker: Snapshot) -> str:
+    """Return where the axes stand, degrees, as the question about a home position names them."""
+    states = {Axis.AZIMUTH: tracker.azimuth, Axis.ELEVATION: tracker.elevation}
+    read = (states[axis] for axis in mount.axes)
+    return " ".join(
+        "-" if one is None or one.position_deg is None else f"{one.position_deg:.1f}" for one in read
+    )
+
+
+def is_answer(confirmed: str, now: str) -> bool:
+    """Return whether somebody was asked about these readings; they may have changed by their noise."""
+    asked, stands = confirmed.split(), now.split()
+    try:
+        pairs = [(float(one), float(other)) for one, other in zip(asked, stands, strict=True)]
+    except ValueError:
+        return False
+    return bool(pairs) and all(abs(one - other) <= NOISE_DEG for one, other in pairs)
 
 
 def _question(mount: MountConfig, axis: Axis, read_deg: float) -> Message:

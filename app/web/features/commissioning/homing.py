@@ -22,7 +22,7 @@ from app.web.shell.frame import snapshot_of
 from app.web.shell.orders import PressDep
 from app.web.shell.render import page
 from app.web.shell.wizard import tracker_of, wizard_frame
-from app.web.shell.zero import zero_doubts
+from app.web.shell.zero import is_answer, readings, zero_doubts
 
 pages = page_router(prefix="/trackers/{tracker_id}/commissioning/homing")
 router = page_router(prefix="/trackers/{tracker_id}")
@@ -38,11 +38,13 @@ async def show(request: Request, tracker_id: str, machine: MachineDep) -> Respon
 
 
 def _page(request: Request, tracker: TrackerDetail, doubts: tuple[str, ...] = ()) -> HomingPage:
+    frame, mount = wizard_frame(request, tracker, StepName.HOMING), tracker.state.config.mount
     return HomingPage(
-        frame=wizard_frame(request, tracker, StepName.HOMING),
+        frame=frame,
         capabilities=tracker.capabilities,
         config=tracker.state.config,
         doubts=doubts,
+        asked=readings(mount, frame.tracker) if doubts and frame.tracker else "",
     )
 
 
@@ -54,10 +56,13 @@ async def zero(
     machine: MachineDep,
     confirmed: Annotated[str, Form(), MAY_BE_ABSENT] = "",
 ) -> Response:
-    """Call the present position zero on both axes; ask first where the drive reads another angle."""
+    """Call the present position zero on both axes; ask first where the drive reads another angle.
+
+    What is confirmed is what the question named: of other readings it is asked again.
+    """
     tracker, now = tracker_of(await machine.detail(), tracker_id), snapshot_of(machine.latest(), tracker_id)
     doubts = () if now is None else zero_doubts(tracker.state.config.mount, now, tuple(Axis))
-    if doubts and confirmed != "yes":
+    if doubts and not (now is not None and is_answer(confirmed, readings(tracker.state.config.mount, now))):
         return page(press.request, _page(press.request, tracker, doubts), block="question", status=422)
     await press.send(SetHome(), tracker_id)
     return press.answer()

@@ -8,10 +8,6 @@ from app.web.features.site.place import Doubt, Mistake, mended
 from app.web.shell import coordinates
 from app.web.shell.location_contexts import PlaceQuestion
 
-MOST = 3
-"""So many sentences are told at the most."""
-ROOM_WORDS, ROOM_AT_NIGHT = 22, 15
-"""So many words beside the page's own are read at a glance; at night, the rows of the sun have more words."""
 SWAP = "swapped"
 DOUBTED = {
     Mistake.EAST_WEST: "longitude",
@@ -58,13 +54,13 @@ def question(
     asked_for = text_of(place, time_zone)
     likely = likeliest(doubts)
     if likely is None or likely.mistake is None or likely.other is None:
-        told = _told([doubt.sentence for doubt in doubts], is_compared=is_compared)
+        told = tuple(doubt.sentence for doubt in doubts)
         return PlaceQuestion(told, "", NOTHING, KEEP_THIS, asked_for, "latitude longitude", is_compared)
     left = {doubt.sentence.template for doubt in doubts_of(likely.other)}
     rest = [doubt.sentence for doubt in doubts if doubt is not likely and doubt.sentence.template in left]
     instead = _answer(likely.other, likely.mistake)
     return PlaceQuestion(
-        _told([likely.sentence, *rest], is_compared=is_compared),
+        (likely.sentence, *rest),
         instead,
         USE[instead],
         _keep(place, likely.mistake),
@@ -72,17 +68,6 @@ def question(
         DOUBTED[likely.mistake],
         is_compared,
     )
-
-
-def _told(sentences: Sequence[Message], *, is_compared: bool) -> tuple[Message, ...]:
-    """Return the first of these sentences, and of the others those for which there is room."""
-    left = (ROOM_WORDS if is_compared else ROOM_AT_NIGHT) - len(sentences[0].split())
-    told = [sentences[0]]
-    for sentence in sentences[1:]:
-        left -= len(sentence.split())
-        if left >= 0:
-            told.append(sentence)
-    return tuple(told[:MOST])
 
 
 def _answer(place: Location, mistake: Mistake) -> str:
