@@ -52,8 +52,8 @@ SIZES = {"desk": (1280, 800), "tablet": (1024, 768), "phone": (390, 844)}
 SOFTWARE_NOTE = "GPU stall due to ReadPixels"
 """Chromium's remark on WebGL without a graphics card, when a page is photographed; it says nothing of it."""
 BEAT = timedelta(milliseconds=100)
-BEGUN_MS = 50
-"""After this time of a page all of its scripts have begun."""
+BEGUN_MS = 1000
+"""After this time of a page all of its scripts have begun, and its way forward saves."""
 EMPTY = "/health"
 """What has no script, and so can forget what the panel's pages keep in this browser."""
 CYCLES_OF_AN_ACCEPT = 5

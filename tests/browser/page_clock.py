@@ -183,6 +183,8 @@ class Stage:
         """Return once a page that was loaded is live, and its scripts have begun."""
         page.wait_for_selector(PAGE_READY)
         self.advance(self.beat_ms)
+        while page.locator("[data-unseen]").count():
+            self.advance(self.beat_ms)
 
     def advance(self, ms: int) -> None:
         """Let time pass for the panel and all pages, once what was done before has come to its end."""

@@ -1,9 +1,11 @@
 """The key forward works whatever else is under way: the step bar is renewed, an order is not answered yet."""
 
-from playwright.sync_api import Route
+from playwright.sync_api import Route, expect
 
 from tests.browser.conftest import Opened, Plant
-from tests.browser.hands import arrive
+from tests.browser.hands import arrive, middle
+from tests.browser.page_clock import Stage
+from tests.e2e.chromium import PAGE_READY
 
 LOCATION = "/trackers/T1/commissioning/location"
 PROGRESS = "/trackers/T1/commissioning/progress/location?here=/trackers/T1/commissioning/location"
@@ -22,6 +24,7 @@ ANSWERED = """() => document.addEventListener("htmx:finally:request", () => {
 
 def test_a_press_outlives_the_renewal_of_the_step_bar(plant: Plant, opened: Opened) -> None:
     page = opened(LOCATION)
+    expect(page.locator("#forward .key")).to_be_enabled()
     page.locator("#forward .key").hover()
     page.mouse.down()
     page.evaluate(RENEWED)
@@ -45,3 +48,19 @@ def test_an_answer_that_comes_late_brings_nobody_back(plant: Plant, opened: Open
         order[0].continue_()
     going[0].continue_()
     arrive(page, "/commissioning/mode")
+
+
+def test_a_second_tap_saves_nothing_on_a_page_that_was_not_seen(stage: Stage) -> None:
+    page = stage.open(LOCATION, "tablet")
+    for step in ("clock", "mode"):
+        page.goto(f"{stage.plant.url}/trackers/T1/commissioning/{step}")
+        page.wait_for_selector(PAGE_READY)
+        save = page.locator("#forward .key")
+        assert save.is_disabled()
+        stage.advance(600)
+        page.mouse.click(*middle(save))
+        stage.advance(50)
+        assert save.is_disabled()
+        stage.advance(100)
+        assert save.is_enabled()
+    assert stage.plant.machine.orders == []

@@ -14,7 +14,7 @@ from tests.browser.site_stage import SiteStage, staged_site
 from tests.browser.test_set_home import COARSE_MS, COUNTS_MS, SET, UNDO
 
 HOMING = "/trackers/T1/commissioning/homing"
-SEARCH = 'form[action$="/home"] button'
+SEARCH = 'form[action$="/home"]:not([hidden]) button'
 SEARCHING = "The drive is searching for its home switches."
 UNFINISHED = "not finished"
 KEY = '[data-jog="azimuth"][data-direction="1"]'
@@ -37,7 +37,7 @@ def word(page: Page) -> str:
 def search(site: SiteStage, page: Page) -> None:
     """Search the home switches; while it runs, it is said, and nothing else of the home position."""
     site.until(page.locator(SEARCH).is_enabled)
-    page.locator(SEARCH).click()
+    Mouse(page, site.advance).hold(page.locator(SEARCH), COUNTS_MS + COARSE_MS)
     site.until(lambda: word(page) == "Homing")
     site.advance(1000)
     assert UNFINISHED not in page.locator("body").inner_text()

@@ -89,3 +89,15 @@ def test_message_and_lamps_follow_when_it_is_undone(stage: Stage) -> None:
 
 def is_blue(page: Page) -> bool:
     return bool(page.locator(SET).evaluate("e => e.classList.contains('key-primary')"))
+
+
+def test_a_question_about_other_readings_is_not_answered(stage: Stage) -> None:
+    stage.beat_ms = COARSE_MS
+    page = stage.open(HOMING, "tablet", allow=("422",))
+    hands = Mouse(page, stage.advance)
+    hands.hold(page.locator(SET), COUNTS_MS + COARSE_MS)
+    shows(stage, page, SURE)
+    stage.beat_ms = BEAT_MS
+    hands.hold(page.locator('[data-jog="azimuth"][data-direction="1"]'), 3 * COARSE_MS)
+    assert page.locator(SURE).count() == 0, "it named where the axes were"
+    assert zeros(stage) == 0
