@@ -98,6 +98,7 @@ TAKEN = re.compile(r"json_key\(|csv_key\(|\bdownload\b|\.csv")
 LEFT = {
     "_protection.html": "values of this moment; the trends have them as curves and as a file",
     "tracker.html": "values of this moment; the trends have them as curves and as a file",
+    "location.html": "where the sun is at this moment, beside what was entered",
     "components.html": "specimens of the parts that pages are made of",
     "_review.html": "what a form would change, asked before it is saved",
     "machine.html": "fields of a form; the page Settings has all settings of a tracker as a file",
