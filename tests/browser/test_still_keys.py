@@ -101,7 +101,7 @@ SEEN_AT_ONCE = {
     "[data-jog]": 4,
     ".speed .key": 2,
     '[data-action="set_home"]': 1,
-    '[data-action="home"]': 1,
+    'form:not([hidden]) > [data-action="home"]': 1,
     ".jog-says": 1,
     "#link-quality": 1,
 }
