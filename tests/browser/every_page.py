@@ -175,6 +175,7 @@ NO_PAGES = {
     "/studies/list": "a part of the page of studies",
     "/trackers/{tracker_id}/commissioning": "leads on to the step that is open",
     "/trackers/{tracker_id}/commissioning/location/preview": "a part of the page of the location",
+    "/trackers/{tracker_id}/commissioning/run/aim": "a part of the last step",
     "/trackers/{tracker_id}/commissioning/progress/{step}": "a part of the step",
     "/trackers/{tracker_id}/strategy/day": "a part of the page of the strategy",
 }
