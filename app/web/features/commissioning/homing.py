@@ -26,7 +26,7 @@ from app.web.shell.zero import is_answer, readings, zero_doubts
 
 pages = page_router(prefix="/trackers/{tracker_id}/commissioning/homing")
 router = page_router(prefix="/trackers/{tracker_id}")
-STEPS = {f"{axis} {by_deg:+g}": (axis, by_deg) for axis in Axis for by_deg in (-1.0, -0.1, 0.1, 1.0)}
+INCREMENTS = {f"{axis} {by_deg:+g}": (axis, by_deg) for axis in Axis for by_deg in (-1.0, -0.1, 0.1, 1.0)}
 """The increments of the page, by the values of their buttons."""
 
 
@@ -88,9 +88,9 @@ async def home(tracker_id: str, press: PressDep) -> Response:
 @needs(Permission.OPERATE)
 async def step(tracker_id: str, press: PressDep, increment: Annotated[str, Form()] = "") -> Response:
     """Move one axis by a small step."""
-    if increment not in STEPS:
+    if increment not in INCREMENTS:
         raise NotAcceptable(N_("Choose an increment of 0.1 or 1 degree of one axis."))
-    await press.send(Step(*STEPS[increment]), tracker_id)
+    await press.send(Step(*INCREMENTS[increment]), tracker_id)
     return press.answer()
 
 

@@ -17,6 +17,7 @@ from app.link.messages import SetLocation, SiteDetail
 from app.sun.position import Algorithm, Location
 from app.tracker.memory.memory import SiteState, StepName
 from app.tracker.values.typed_numbers import written
+from app.web.features.site.location_contexts import LocationPage, LocationPreview, PlaceQuestion
 from app.web.features.site.place import Doubt, place_doubts, refuse_before_asking, zone_at
 from app.web.features.site.place_preview import preview_of, sun_rows
 from app.web.features.site.place_question import instead_of, likeliest, question, text_of
@@ -28,7 +29,6 @@ from app.web.shell import coordinates
 from app.web.shell.deps import Panel, PanelDep
 from app.web.shell.formats import offset
 from app.web.shell.forms import Typed
-from app.web.shell.location_contexts import LocationPage, LocationPreview, PlaceQuestion
 from app.web.shell.orders import PressDep
 from app.web.shell.render import go, page, wants_block
 from app.web.shell.wizard import tracker_of, wizard_frame
@@ -235,7 +235,6 @@ def _answer(
         rows=rows,
         zones=zones(),
         by_place=f"{found.zone} {offset(now, found.zone)}" if found.location else "",
-        revision=detail.site.location_revision,
         question=_question(found, detail.site, built, is_compared=not all(row.is_down for row in rows)),
         is_part=block is not None and wants_block(request),
     )

@@ -7,11 +7,11 @@ from app.base.message import N_, NOTHING, Message
 from app.base.zones import day_in, zone_of
 from app.sun.events import PolarDay, SunEvents, day_events
 from app.sun.position import Algorithm, InstantRefused, Location, sun_position
+from app.web.features.site.location_contexts import LocationPreview, SunRow
 from app.web.features.site.place import SEA, Mistake, zone_at
 from app.web.features.site.site_map import label_of, side_of
 from app.web.languages import pgettext
 from app.web.shell.formats import UNKNOWN, angle, decimals, formatted, local, offset
-from app.web.shell.location_contexts import LocationPreview, SunRow
 
 
 def preview_of(

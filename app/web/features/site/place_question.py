@@ -4,9 +4,9 @@ from collections.abc import Callable, Sequence
 
 from app.base.message import N_, NOTHING, Message
 from app.sun.position import Location
+from app.web.features.site.location_contexts import PlaceQuestion
 from app.web.features.site.place import Doubt, Mistake, mended
 from app.web.shell import coordinates
-from app.web.shell.location_contexts import PlaceQuestion
 
 SWAP = "swapped"
 DOUBTED = {

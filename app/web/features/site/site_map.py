@@ -6,10 +6,10 @@ from datetime import datetime
 
 from app.sun.position import Algorithm, InstantRefused, Location
 from app.sun.terminator import subsolar_point, terminator_deg
+from app.web.features.site.location_contexts import MapMark, SiteMap
 from app.web.features.site.place import Mistake
 from app.web.languages import pgettext
 from app.web.shell.formats import decimals
-from app.web.shell.location_contexts import MapMark, SiteMap
 
 PER_DEG = 10.0
 """Units of the world's path to a degree."""

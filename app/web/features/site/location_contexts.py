@@ -94,6 +94,5 @@ class LocationPage:
     rows: tuple[SunRow, ...]
     zones: tuple[str, ...]
     by_place: str
-    revision: int
     question: PlaceQuestion | None
     is_part: bool
